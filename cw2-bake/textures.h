@@ -1,0 +1,52 @@
+// Source images to finished mip chains.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cw2-bake/diagnostics.h"
+#include "cw2-bake/source_scene.h"
+#include "mesh-format/layout.h"
+
+namespace bake {
+
+/// One finished texture; `payload` is as mesh_format::TextureRecord describes.
+struct Texture {
+    std::string name;
+    mesh_format::TextureFormat format{};
+    bool clamp = false;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::byte> payload;
+};
+
+/// What one material samples: indices into TextureSet::textures, or mesh_format::kNoTexture.
+struct MaterialTextures {
+    std::uint32_t base_color = mesh_format::kNoTexture;
+    std::uint32_t roughness = mesh_format::kNoTexture;
+    std::uint32_t metalness = mesh_format::kNoTexture;
+    std::uint32_t normal = mesh_format::kNoTexture;
+    std::uint32_t alpha_mask = mesh_format::kNoTexture;
+};
+
+struct TextureSet {
+    std::vector<Texture> textures;  ///< equal textures are stored once, in order of first use
+    std::vector<MaterialTextures> materials;  ///< one a material
+};
+
+/// Told how much of the textures is done, in [0, 1], and the name of the image at work; called
+/// from one thread at a time.
+using TextureProgress = std::function<void(double done, std::string_view name)>;
+
+/// Reads and filters every image the materials name, on as many threads as TBB is allowed; the
+/// result does not depend on their number. An image that is missing or cannot be read is a warning
+/// that names it, and the material goes on without it.
+TextureSet bake_textures(std::span<const SourceMaterial> materials, const Warn& warn,
+                         const TextureProgress& progress);
+
+}  // namespace bake

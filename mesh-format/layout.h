@@ -1,0 +1,235 @@
+// The byte layout of a .cw2mesh file: everything that is written to disk is declared here, once.
+//
+// A file is a Header followed by its sections, each aligned to kSectionAlignment and zero-padded
+// up to it. All numbers are little-endian. Section k of the header's table has SectionKind k:
+//
+//   scene      one SceneRecord
+//   meshes     MeshRecord[]
+//   materials  MaterialRecord[]
+//   textures   TextureRecord[]
+//   strings    UTF-8 bytes that StringRef points into, no terminators
+//   vertices   packed vertices of all meshes, mesh after mesh
+//   indices    uint16[], triangle lists; an index counts from its mesh's first vertex
+//   texels     the mip chains of all textures, texture after texture
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace mesh_format {
+
+static_assert(std::endian::native == std::endian::little, "files are little-endian");
+
+inline constexpr std::array<char, 8> kMagic{'C', 'W', '2', 'M', 'E', 'S', 'H', '\0'};
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint64_t kSectionAlignment = 64;
+/// A mesh's vertices are addressed by 16-bit indices.
+inline constexpr std::uint32_t kMaxMeshVertices = 65'536;
+inline constexpr std::uint32_t kNoTexture = 0xFFFF'FFFF;
+
+enum class SectionKind : std::uint32_t {
+    scene,
+    meshes,
+    materials,
+    textures,
+    strings,
+    vertices,
+    indices,
+    texels,
+    count
+};
+inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(SectionKind::count);
+
+struct Section {
+    std::uint64_t offset;    ///< bytes from the start of the file, a multiple of kSectionAlignment
+    std::uint64_t size;      ///< bytes, without padding
+    std::uint64_t checksum;  ///< checksum() of the section's bytes, see file.h
+};
+
+struct Header {
+    std::array<char, 8> magic;
+    std::uint32_t version;
+    std::uint32_t header_size;  ///< sizeof(Header)
+    std::uint64_t file_size;    ///< bytes, the header included
+    std::uint64_t checksum;     ///< checksum() of the header with this field 0
+    std::array<Section, kSectionCount> sections;
+};
+
+/// Bytes [offset, offset + length) of the strings section.
+struct StringRef {
+    std::uint32_t offset;
+    std::uint32_t length;
+};
+
+/// How a vertex holds its position. Each mesh says in which form its vertices hold position, frame
+/// and UV; vertex_layout() says where.
+enum class PositionForm : std::uint8_t {
+    quantised,  ///< 3 x uint16 on the scene's lattice: step * (mesh.origin + q), exact in float
+    f32,        ///< 3 x float
+};
+
+/// How a vertex holds its tangent frame; see tangent_frame.h.
+enum class FrameForm : std::uint8_t {
+    quat48,  ///< 3 x uint16
+    quat32,  ///< 2 x uint16
+    half3,   ///< 3 x IEEE half, the handedness in bit 14 of the first
+    f32,     ///< 4 x float, the handedness in the sign of w
+};
+
+/// How a vertex holds its texture coordinate; v = 0 is the top row of the image.
+enum class UvForm : std::uint8_t {
+    quantised,  ///< 2 x uint16: mesh.uv_origin + mesh.uv_step * q
+    f32,        ///< 2 x float
+};
+
+struct SceneRecord {
+    float bounds_min[3];  ///< bounding box of all positions as decoded, scene units
+    float bounds_max[3];
+    float radius;          ///< largest distance of a vertex from the box's centre, scene units
+    float position_step;   ///< lattice step, a power of two, scene units; 0 if no mesh is quantised
+    float position_error;  ///< largest distance between a source and its decoded position
+    float frame_error_mean;  ///< angle of the rotation between true and decoded frame, degrees
+    float frame_error_max;
+    float
+        uv_error;  ///< largest UV error, in texels of the mesh's largest texture (of 1024 if none)
+};
+
+struct MeshRecord {
+    std::uint32_t material;
+    PositionForm position_form;
+    FrameForm frame_form;
+    UvForm uv_form;
+    std::uint8_t reserved;  ///< 0
+    std::uint32_t vertex_count;
+    std::uint32_t index_count;    ///< a multiple of 3
+    std::uint64_t vertex_offset;  ///< bytes into the vertices section, a multiple of 4
+    std::uint64_t first_index;    ///< uint16 units into the indices section
+    std::int32_t origin[3];       ///< lattice units; |origin + q| < 2^24
+    float uv_origin[2];
+    float uv_step[2];     ///< powers of two
+    float bounds_min[3];  ///< of the decoded positions, scene units
+    float bounds_max[3];
+    std::uint32_t reserved2;  ///< 0
+};
+
+enum MaterialFlags : std::uint32_t {
+    kAlphaMask = 1,  ///< drawn by the alpha-mask pipeline
+    kCullBack = 2,   ///< back faces are not drawn; from OBJ: never set
+};
+
+/// Factors multiply their texture's sample; an absent texture counts as 1 (normal: (0, 0, 1)).
+struct MaterialRecord {
+    StringRef name;
+    float base_color[3];  ///< linear
+    float roughness;      ///< [0, 1], the alpha of the Blinn-Phong distribution
+    float metalness;      ///< [0, 1]
+    float alpha_cutoff;   ///< a fragment whose mask is below this is discarded
+    std::uint32_t flags;  ///< MaterialFlags
+    /// Indices into the textures section, or kNoTexture.
+    std::uint32_t base_color_texture;
+    std::uint32_t roughness_texture;
+    std::uint32_t metalness_texture;
+    std::uint32_t normal_texture;
+    std::uint32_t alpha_mask_texture;
+};
+
+enum class TextureFormat : std::uint32_t {
+    r8_unorm,
+    rgba8_unorm,
+    rgba8_srgb,
+};
+
+enum TextureFlags : std::uint32_t {
+    kClampToEdge = 1,  ///< otherwise repeat
+};
+
+/// A texture's payload is its complete mip chain, largest level first, each level's rows tightly
+/// packed from the top, each level starting at a multiple of kMipAlignment from the first.
+struct TextureRecord {
+    StringRef name;
+    TextureFormat format;
+    std::uint32_t flags;  ///< TextureFlags
+    std::uint32_t width;  ///< texels of level 0
+    std::uint32_t height;
+    std::uint32_t mip_count;  ///< full_mip_count(width, height)
+    std::uint32_t reserved;   ///< 0
+    std::uint64_t offset;     ///< bytes into the texels section, a multiple of kMipAlignment
+    std::uint64_t size;       ///< mip_chain_bytes(format, width, height)
+};
+inline constexpr std::uint64_t kMipAlignment = 16;
+inline constexpr std::uint32_t kMaxTextureSize = 16'384;
+
+static_assert(sizeof(Section) == 24 && sizeof(Header) == 32 + 24 * kSectionCount);
+static_assert(sizeof(SceneRecord) == 48 && sizeof(MeshRecord) == 88);
+static_assert(sizeof(MaterialRecord) == 56 && sizeof(TextureRecord) == 48);
+static_assert(std::is_trivially_copyable_v<Header> && std::is_trivially_copyable_v<MeshRecord>);
+
+constexpr std::uint32_t position_bytes(PositionForm form) {
+    return form == PositionForm::quantised ? 6 : 12;
+}
+constexpr std::uint32_t frame_bytes(FrameForm form) {
+    return form == FrameForm::f32 ? 16 : form == FrameForm::quat32 ? 4 : 6;
+}
+constexpr std::uint32_t uv_bytes(UvForm form) {
+    return form == UvForm::quantised ? 4 : 8;
+}
+
+/// Where a vertex's parts lie, in bytes. Position, frame and UV follow each other; a part of 32-bit
+/// components starts at a multiple of 4.
+struct VertexLayout {
+    std::uint32_t frame_offset;  ///< the position is at 0
+    std::uint32_t uv_offset;
+    std::uint32_t stride;  ///< 16 in the default forms
+};
+
+constexpr VertexLayout vertex_layout(PositionForm position, FrameForm frame, UvForm uv) {
+    const auto align = [](std::uint32_t offset, bool wide) {
+        return wide ? (offset + 3) / 4 * 4 : offset;
+    };
+    const bool wide_frame = frame == FrameForm::f32;
+    const bool wide_uv = uv == UvForm::f32;
+    const bool wide = position == PositionForm::f32 || wide_frame || wide_uv;
+    VertexLayout layout{};
+    layout.frame_offset = align(position_bytes(position), wide_frame);
+    layout.uv_offset = align(layout.frame_offset + frame_bytes(frame), wide_uv);
+    layout.stride = align(layout.uv_offset + uv_bytes(uv), wide);
+    return layout;
+}
+static_assert(vertex_layout(PositionForm::quantised, FrameForm::quat48, UvForm::quantised).stride ==
+              16);
+
+constexpr std::uint32_t texel_bytes(TextureFormat format) {
+    return format == TextureFormat::r8_unorm ? 1 : 4;
+}
+
+constexpr std::uint32_t full_mip_count(std::uint32_t width, std::uint32_t height) {
+    return static_cast<std::uint32_t>(std::bit_width(width > height ? width : height));
+}
+
+/// Extent of a mip level along one side whose level 0 has `extent` texels.
+constexpr std::uint32_t mip_extent(std::uint32_t extent, std::uint32_t level) {
+    return extent >> level > 0 ? extent >> level : 1;
+}
+
+/// Bytes of one level, padding to kMipAlignment included.
+constexpr std::uint64_t mip_bytes(TextureFormat format, std::uint32_t width, std::uint32_t height,
+                                  std::uint32_t level) {
+    const std::uint64_t bytes =
+        std::uint64_t{mip_extent(width, level)} * mip_extent(height, level) * texel_bytes(format);
+    return (bytes + kMipAlignment - 1) / kMipAlignment * kMipAlignment;
+}
+
+/// Bytes of the complete chain.
+constexpr std::uint64_t mip_chain_bytes(TextureFormat format, std::uint32_t width,
+                                        std::uint32_t height) {
+    std::uint64_t sum = 0;
+    for (std::uint32_t level = 0; level < full_mip_count(width, height); ++level) {
+        sum += mip_bytes(format, width, height, level);
+    }
+    return sum;
+}
+
+}  // namespace mesh_format
