@@ -3,18 +3,12 @@
 
 #include <filesystem>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <string_view>
 
+#include "mesh-format/io.h"
 #include "mesh-format/layout.h"
 
 namespace mesh_format {
-
-/// A file that cannot be read or written; what() is one line "PATH: what is wrong".
-class FileError : public std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
 
 /// The contents of a file. The spans point into memory that someone else keeps.
 struct Document {
@@ -41,44 +35,6 @@ Document parse(std::span<const std::byte> bytes, std::string_view name);
 /// and renames it, so that `path` holds either its old contents or the whole new file. The same
 /// document gives the same bytes. Returns the file's size in bytes.
 std::uint64_t write(const Document& document, const std::filesystem::path& path);
-
-/// A file mapped read-only, unmapped when destroyed.
-class MappedFile {
- public:
-    /// Throws FileError if `path` is missing, is not a regular file, or cannot be read.
-    explicit MappedFile(const std::filesystem::path& path);
-    ~MappedFile();
-    MappedFile(const MappedFile&) = delete;
-    MappedFile& operator=(const MappedFile&) = delete;
-    MappedFile(MappedFile&& other) noexcept;
-    MappedFile& operator=(MappedFile&& other) noexcept;
-
-    std::span<const std::byte> bytes() const { return bytes_; }
-
- private:
-    std::span<const std::byte> bytes_;
-};
-
-/// A file that is written beside its target and takes its place on commit(); destroyed without
-/// commit() it leaves no trace.
-class OutputFile {
- public:
-    /// Throws FileError if no file can be made beside `target`.
-    explicit OutputFile(std::filesystem::path target);
-    ~OutputFile();
-    OutputFile(const OutputFile&) = delete;
-    OutputFile& operator=(const OutputFile&) = delete;
-
-    /// Appends; throws FileError on a full disk and the like.
-    void write(std::span<const std::byte> bytes);
-    /// Renames the finished file to its target.
-    void commit();
-
- private:
-    std::filesystem::path target_;
-    std::filesystem::path temporary_;
-    int descriptor_ = -1;
-};
 
 /// Detects altered bytes, no defence against intent: 64-bit words, little-endian and the last one
 /// zero-padded, are folded into four lanes (word i into lane i mod 4) by
