@@ -30,6 +30,18 @@ struct TangentFrame {
 ///     f32      16      rounding of float
 ///
 /// The 24 frames along the axes are exact in every form, for both hands.
+///
+/// The bits, where `others` are the components besides the largest in the order x, y, z, w, each
+/// divided by it, warped by a = atan(ratio) / (pi / 4) and rounded to a digit:
+///
+///     quat48   word k = digit of others[k], 0..32766; bit 15 of word 0 = left-handed, of words 1
+///              and 2 = bits 0 and 1 of the largest component's number
+///     quat32   digits 0..810: others[0] + 811 (others[1] + 811 (others[2] + 811 (number of the
+///              largest + 4 left-handed)))
+///     half3    x, y, z; bit 14 of the first = left-handed; bit 14 of the second: w is 1, else w is
+///              what x, y, z lack to unit length. So are the quarter turns exact: (1, 0, 0, 1)
+///     f32      x, y, z, w scaled to a largest component of +-1, w >= 0; the sign bit of w =
+///              left-handed
 void pack_frame(FrameForm form, const TangentFrame& frame, std::byte* out);
 
 /// Reads the frame_bytes(form) bytes at `in`. Any bytes give a finite frame; those that no

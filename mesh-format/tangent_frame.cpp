@@ -1,0 +1,381 @@
+#include "mesh-format/tangent_frame.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <numbers>
+
+#include "mesh-format/frame_constants.h"
+
+namespace mesh_format {
+namespace {
+
+static_assert(kFrameQuat48 == static_cast<int>(FrameForm::quat48) &&
+              kFrameQuat32 == static_cast<int>(FrameForm::quat32) &&
+              kFrameHalf3 == static_cast<int>(FrameForm::half3) &&
+              kFrameF32 == static_cast<int>(FrameForm::f32));
+
+struct Vec3 {
+    double x, y, z;
+};
+
+double dot(Vec3 a, Vec3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Vec3 cross(Vec3 a, Vec3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Vec3 scaled(Vec3 a, double s) {
+    return {a.x * s, a.y * s, a.z * s};
+}
+
+Vec3 wide(const float (&v)[3]) {
+    return {v[0], v[1], v[2]};
+}
+
+/// `v` less its part along the unit vector `n`.
+Vec3 across(Vec3 v, Vec3 n) {
+    const double along = dot(v, n);
+    return {v.x - along * n.x, v.y - along * n.y, v.z - along * n.z};
+}
+
+/// The coordinate axis that is farthest from +-n; the first of equals.
+Vec3 axis_far_from(Vec3 n) {
+    const double x = std::abs(n.x);
+    const double y = std::abs(n.y);
+    const double z = std::abs(n.z);
+    if (x <= y && x <= z) return {1, 0, 0};
+    return y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+}
+
+/// A rotation as a quaternion x, y, z, w that is scaled so that q[largest] = 1.
+struct Rotation {
+    std::array<double, 4> q;
+    unsigned largest;
+};
+
+/// The rotation (t, cross(n, t), n) of `frame`, made orthonormal.
+Rotation rotation_of(const TangentFrame& frame) {
+    // A sine of 1e-6 is what float vectors of one direction may differ by.
+    constexpr double kParallelSquared = 1e-12;
+
+    Vec3 n = wide(frame.normal);
+    const double normal_squared = dot(n, n);
+    const bool has_normal = normal_squared > 0 && std::isfinite(normal_squared);
+    n = has_normal ? scaled(n, 1 / std::sqrt(normal_squared)) : Vec3{0, 0, 1};
+
+    Vec3 t = wide(frame.tangent);
+    const double full = dot(t, t);
+    t = across(t, n);
+    double squared = dot(t, t);
+    // False for NaN and for two infinities too.
+    if (!(squared > kParallelSquared * full)) {
+        t = across(axis_far_from(n), n);
+        squared = dot(t, t);
+    }
+    t = scaled(t, 1 / std::sqrt(squared));
+    const Vec3 b = cross(n, t);
+
+    // Every row of 4 q q^T is a multiple of q; the one with the largest diagonal is the most
+    // precise, and dividing by that diagonal makes the largest component +1, whatever its sign was.
+    const double diagonal[4] = {1 + t.x - b.y - n.z, 1 - t.x + b.y - n.z, 1 - t.x - b.y + n.z,
+                                1 + t.x + b.y + n.z};
+    const auto largest = static_cast<unsigned>(std::max_element(diagonal, diagonal + 4) - diagonal);
+    const double xy = t.y + b.x;
+    const double xz = t.z + n.x;
+    const double yz = b.z + n.y;
+    const double xw = b.z - n.y;
+    const double yw = n.x - t.z;
+    const double zw = t.y - b.x;
+    const std::array<double, 4> rows[4] = {
+        {diagonal[0], xy, xz, xw},
+        {xy, diagonal[1], yz, yw},
+        {xz, yz, diagonal[2], zw},
+        {xw, yw, zw, diagonal[3]},
+    };
+    Rotation rotation{rows[largest], largest};
+    const double inverse = 1 / diagonal[largest];
+    for (double& component : rotation.q) component *= inverse;
+    return rotation;
+}
+
+/// The rotation matrix of a quaternion of any length but 0. Dividing by the squared length instead
+/// of normalising first keeps quaternions of small integers, hence the axis frames, exact.
+/// shaders/tangent_frame.glsl repeats this operation by operation.
+TangentFrame frame_of(float x, float y, float z, float w, bool left_handed) {
+    const float s = 2.0f / (x * x + y * y + z * z + w * w);
+    return {{1.0f - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)},
+            {s * (x * z + w * y), s * (y * z - w * x), 1.0f - s * (x * x + y * y)},
+            left_handed ? -1.0f : 1.0f};
+}
+
+// --- quat48 and quat32: the largest component dropped, its ratios to the others warped -----------
+
+using Digits = std::array<std::uint32_t, 3>;
+
+/// atan(x) / (pi / 4) for |x| <= 1, in the shape of tan_quarter_pi; within 2.3e-7.
+float warped(float x) {
+    const float y = x * x;
+    float p = 0.00438045943f;
+    p = p * y - 0.0206893347f;
+    p = p * y + 0.0466871634f;
+    p = p * y - 0.0735261068f;
+    p = p * y + 0.102728099f;
+    p = p * y - 0.151129022f;
+    p = p * y + 0.273239106f;
+    return x * (1.0f + (1.0f - y) * p);
+}
+
+/// The three ratios, in the order of their components, each rounded to one of 2 * half + 1 levels.
+Digits digits_of(const Rotation& rotation, int half) {
+    Digits digits{};
+    for (unsigned k = 0; k < 3; ++k) {
+        const double ratio = rotation.q[k + (k >= rotation.largest)];
+        const double level = static_cast<double>(warped(static_cast<float>(ratio))) * half;
+        // Truncating a positive number plus one half rounds to nearest.
+        digits[k] = static_cast<std::uint32_t>(static_cast<int>(level + (half + 0.5)));
+    }
+    return digits;
+}
+
+float tan_quarter_pi(float x) {
+    const float y = x * x;
+    const float q = ((((kTanQ5 * y + kTanQ4) * y + kTanQ3) * y + kTanQ2) * y + kTanQ1) * y + kTanQ0;
+    return x * (1.0f - (1.0f - y) * q);
+}
+
+TangentFrame frame_of_digits(const Digits& digits, int half, float inverse_half,
+                             std::uint32_t largest, bool left_handed) {
+    float q[4];
+    for (unsigned i = 0, k = 0; i < 4; ++i) {
+        if (i == largest) {
+            q[i] = 1.0f;
+        } else {
+            const int level = static_cast<int>(digits[k++]) - half;
+            q[i] = tan_quarter_pi(static_cast<float>(level) * inverse_half);
+        }
+    }
+    return frame_of(q[0], q[1], q[2], q[3], left_handed);
+}
+
+using Words = std::array<std::uint16_t, 3>;
+
+Words pack_quat48(const Rotation& rotation, bool left_handed) {
+    const Digits digits = digits_of(rotation, kQuat48DigitMax / 2);
+    const std::uint32_t flags[3] = {left_handed, rotation.largest & 1, rotation.largest >> 1};
+    Words words{};
+    for (int i = 0; i < 3; ++i) {
+        words[i] = static_cast<std::uint16_t>(digits[i] | flags[i] << 15);
+    }
+    return words;
+}
+
+TangentFrame unpack_quat48(const Words& words) {
+    Digits digits{};
+    for (int i = 0; i < 3; ++i) {
+        digits[i] = std::min<std::uint32_t>(words[i] & 0x7FFFu, kQuat48DigitMax);
+    }
+    const std::uint32_t largest = words[1] >> 15 | words[2] >> 15 << 1;
+    return frame_of_digits(digits, kQuat48DigitMax / 2, kQuat48InverseHalf, largest,
+                           words[0] >> 15 != 0);
+}
+
+std::uint32_t pack_quat32(const Rotation& rotation, bool left_handed) {
+    const Digits digits = digits_of(rotation, kQuat32Base / 2);
+    std::uint32_t code = left_handed * 4u + rotation.largest;
+    for (int i = 2; i >= 0; --i) code = code * kQuat32Base + digits[i];
+    return code;
+}
+
+TangentFrame unpack_quat32(std::uint32_t code) {
+    Digits digits{};
+    for (std::uint32_t& digit : digits) {
+        digit = code % kQuat32Base;
+        code /= kQuat32Base;
+    }
+    return frame_of_digits(digits, kQuat32Base / 2, kQuat32InverseHalf, code & 3, (code & 4) != 0);
+}
+
+// --- half3: x, y and z of the unit quaternion with w >= 0 ----------------------------------------
+
+constexpr std::uint16_t kSpareBit = 0x4000;  // clear in every half of magnitude below 2
+
+/// The half nearest to `value` in [0, 1].
+std::uint16_t half_of(double value) {
+    const auto narrow = static_cast<float>(value);
+    if (narrow < 0x1p-14f) return static_cast<std::uint16_t>(std::lrint(narrow * 0x1p24f));
+    const auto bits = std::bit_cast<std::uint32_t>(narrow);
+    return static_cast<std::uint16_t>(((bits + 0xFFF + (bits >> 13 & 1)) >> 13) - (112u << 10));
+}
+
+float float_of_half(std::uint16_t half) {
+    const std::uint32_t magnitude = half & 0x3FFFu;
+    const float value = magnitude < 0x400 ? static_cast<float>(magnitude) * 0x1p-24f
+                                          : std::bit_cast<float>((magnitude << 13) + (112u << 23));
+    return half & 0x8000 ? -value : value;
+}
+
+/// Of the eight codes around `v`, three magnitudes of a unit vector, the one whose half turn is
+/// nearest. Rounding each component may leave the code inside the unit sphere, and the decoder
+/// would make up the missing length with a w of up to 0.03.
+Words nearest_half_turn(const std::array<double, 3>& v) {
+    Words below{};
+    for (int i = 0; i < 3; ++i) {
+        below[i] = half_of(v[i]);
+        if (float_of_half(below[i]) > v[i]) --below[i];
+    }
+    Words best{};
+    double best_distance = 8;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        Words code = below;
+        double c[3];
+        for (unsigned i = 0; i < 3; ++i) {
+            if (corner >> i & 1 && float_of_half(below[i]) < v[i]) ++code[i];
+            c[i] = float_of_half(code[i]);
+        }
+        const double squared = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+        const double length = std::sqrt(std::max(1.0, squared));
+        double distance = std::max(0.0, 1 - squared);  // the decoder's w, squared
+        for (int i = 0; i < 3; ++i) {
+            distance += (c[i] / length - v[i]) * (c[i] / length - v[i]);
+        }
+        if (distance < best_distance) {
+            best_distance = distance;
+            best = code;
+        }
+    }
+    return best;
+}
+
+Words pack_half3(const Rotation& rotation, bool left_handed) {
+    constexpr double kExact = 1e-6;  // closer than this to a half or quarter turn is one
+    const auto& [x, y, z, w] = rotation.q;
+    const double sign = w < 0 ? -1 : 1;
+    const double norm = std::sqrt(x * x + y * y + z * z + w * w);
+    const std::array<double, 3> v{std::abs(x) / norm, std::abs(y) / norm, std::abs(z) / norm};
+
+    Words words{};
+    const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});
+    const double sum = std::abs(x) + std::abs(y) + std::abs(z);
+    if (std::abs(w) >= 1 - kExact && largest >= 1 - kExact && sum <= 1 + kExact) {
+        // Quarter turn about an axis: it needs sqrt(1/2), which no half is.
+        for (int i = 0; i < 3; ++i) words[i] = half_of(std::round(std::abs(rotation.q[i])));
+        words[1] |= kSpareBit;
+    } else if (std::abs(w) < kExact * norm) {
+        words = nearest_half_turn(v);
+    } else {
+        for (int i = 0; i < 3; ++i) words[i] = half_of(v[i]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        if (rotation.q[i] * sign < 0) words[i] |= 0x8000;
+    }
+    if (left_handed) words[0] |= kSpareBit;
+    return words;
+}
+
+TangentFrame unpack_half3(const Words& words) {
+    const float x = float_of_half(words[0]);
+    const float y = float_of_half(words[1]);
+    const float z = float_of_half(words[2]);
+    const float squared = x * x + y * y + z * z;
+    const float w = words[1] & kSpareBit ? 1.0f : std::sqrt(std::max(0.0f, 1.0f - squared));
+    return frame_of(x, y, z, w, (words[0] & kSpareBit) != 0);
+}
+
+// --- f32: x, y, z, w with w >= 0, the handedness in its sign bit ---------------------------------
+
+using Components = std::array<std::uint32_t, 4>;
+constexpr std::uint32_t kSignBit = 0x8000'0000;
+constexpr std::uint32_t kOneBits = std::bit_cast<std::uint32_t>(1.0f);
+
+Components pack_f32(const Rotation& rotation, bool left_handed) {
+    const double sign = rotation.q[3] < 0 ? -1 : 1;
+    Components bits{};
+    for (int i = 0; i < 4; ++i) {
+        bits[i] = std::bit_cast<std::uint32_t>(static_cast<float>(rotation.q[i] * sign));
+    }
+    bits[3] = (bits[3] & ~kSignBit) | (left_handed ? kSignBit : 0);
+    return bits;
+}
+
+TangentFrame unpack_f32(const Components& bits) {
+    // Clamping the bits sends infinities and NaN to +-1 as well.
+    float q[4];
+    for (int i = 0; i < 4; ++i) {
+        const std::uint32_t magnitude = std::min(bits[i] & ~kSignBit, kOneBits);
+        q[i] = std::bit_cast<float>(magnitude | (i < 3 ? bits[i] & kSignBit : 0));
+    }
+    // pack_frame writes a squared length of at least 1.
+    if (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] < 0.5f) q[3] = 1.0f;
+    return frame_of(q[0], q[1], q[2], q[3], (bits[3] & kSignBit) != 0);
+}
+
+template <class T>
+T read(const std::byte* in) {
+    T value;
+    std::memcpy(&value, in, sizeof value);
+    return value;
+}
+
+template <class T>
+void write(const T& value, std::byte* out) {
+    std::memcpy(out, &value, sizeof value);
+}
+
+}  // namespace
+
+void pack_frame(FrameForm form, const TangentFrame& frame, std::byte* out) {
+    const Rotation rotation = rotation_of(frame);
+    const bool left_handed = frame.handedness < 0;
+    switch (form) {
+        case FrameForm::quat48:
+            write(pack_quat48(rotation, left_handed), out);
+            break;
+        case FrameForm::quat32:
+            write(pack_quat32(rotation, left_handed), out);
+            break;
+        case FrameForm::half3:
+            write(pack_half3(rotation, left_handed), out);
+            break;
+        case FrameForm::f32:
+            write(pack_f32(rotation, left_handed), out);
+            break;
+    }
+}
+
+TangentFrame unpack_frame(FrameForm form, const std::byte* in) {
+    switch (form) {
+        case FrameForm::quat48:
+            return unpack_quat48(read<Words>(in));
+        case FrameForm::quat32:
+            return unpack_quat32(read<std::uint32_t>(in));
+        case FrameForm::half3:
+            return unpack_half3(read<Words>(in));
+        case FrameForm::f32:
+            break;
+    }
+    return unpack_f32(read<Components>(in));
+}
+
+double frame_angle(const TangentFrame& a, const TangentFrame& b) {
+    if ((a.handedness < 0) != (b.handedness < 0)) return 180;
+    const auto squared_distance = [](Vec3 u, Vec3 v) {
+        const Vec3 d{u.x - v.x, u.y - v.y, u.z - v.z};
+        return dot(d, d);
+    };
+    const Vec3 ta = wide(a.tangent);
+    const Vec3 tb = wide(b.tangent);
+    const Vec3 na = wide(a.normal);
+    const Vec3 nb = wide(b.normal);
+    // Two rotations at an angle of theta differ by 2 sqrt(2) sin(theta / 2) in Frobenius' norm,
+    // which is precise for small angles where the trace is not.
+    const double squared = squared_distance(ta, tb) + squared_distance(na, nb) +
+                           squared_distance(cross(na, ta), cross(nb, tb));
+    const double sine = std::min(1.0, std::sqrt(squared / 8));
+    return 2 * std::asin(sine) * (180 / std::numbers::pi);
+}
+
+}  // namespace mesh_format
