@@ -67,7 +67,7 @@ struct SourceMaterial {
 /// component is -0 (so that equality of bits is equality of values).
 struct SourceScene {
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;  ///< unit length, or as stated if of no usable length
+    std::vector<glm::vec3> normals;  ///< unit length where a corner refers to it
     std::vector<glm::vec2> uvs;
     std::vector<Corner> corners;                   ///< 3 a triangle, counter-clockwise
     std::vector<std::uint32_t> triangle_material;  ///< one a triangle, index into materials

@@ -1,0 +1,42 @@
+// Lines and statements of OBJ and MTL text. A line ends in LF, CR or CRLF.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace bake {
+
+inline bool is_line_end(char c) {
+    return c == '\n' || c == '\r';
+}
+
+/// White space inside a line.
+inline bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+
+/// Without the blanks at both ends.
+std::string_view trimmed(std::string_view text);
+
+/// Takes the first word, and the blanks around it, off `text`; empty if there is none.
+std::string_view take_word(std::string_view& text);
+
+/// `text` without a UTF-8 byte order mark at its start.
+std::string_view without_bom(std::string_view text);
+
+/// Where the line that holds text[offset] ends, its line end included.
+std::size_t line_end(std::string_view text, std::size_t offset);
+
+/// The statement whose first line starts at `offset`, without its line end; lines that end in a
+/// backslash are joined with the next by a blank, unless the statement is a comment. Moves
+/// `offset` to the line after it.
+std::string take_statement(std::string_view text, std::size_t& offset);
+
+/// The number of the line, from 1, that holds text[offset]. Linear in `offset`: for messages.
+std::size_t line_number(std::string_view text, std::size_t offset);
+
+/// `text` in quotes, fit for a message: shortened, and without control characters.
+std::string in_quotes(std::string_view text);
+
+}  // namespace bake
