@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds Release, makes the demo scene, bakes it, renders the pictures
+# below into build/demo and opens the window where there is a display.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+# picture | what cw2 is told besides the scene
+pictures='
+courtyard      | --time 0
+courtyard-dusk | --time 2.5
+sculpture      | --time 0 --camera-position 4,2,4 --camera-target 0,1.5,0
+sculpture-dusk | --time 2.5 --camera-position 4,2,4 --camera-target 0,1.5,0
+normal         | --view normal
+'
+
+model=build/release/assets/demo/courtyard.obj
+scene=build/demo/courtyard.cw2mesh
+bake=build/release/bin/cw2-bake
+cw2=build/release/bin/cw2
+
+# Runs a command, then prints the path it made and the seconds it took.
+timed() {
+    local path=$1 start=${EPOCHREALTIME/[.,]/} centiseconds
+    shift
+    "$@"
+    centiseconds=$(((${EPOCHREALTIME/[.,]/} - start) / 10000))
+    printf '%-36s %3d.%02d s\n' "$path" $((centiseconds / 100)) $((centiseconds % 100))
+}
+
+third_party/install_packages.sh
+cmake --preset release >/dev/null
+cmake --build --preset release --target cw2 cw2-bake demo-scene -- --quiet
+
+mkdir -p build/demo
+if [[ ! $scene -nt $model || ! $scene -nt $bake ]]; then
+    timed "$scene" "$bake" "$model" -o "$scene"
+fi
+while IFS='|' read -r name arguments; do
+    [[ -n $name ]] || continue
+    read -ra arguments <<<"$arguments"
+    picture=build/demo/${name%% *}.png
+    timed "$picture" "$cw2" "$scene" --output "$picture" "${arguments[@]}" </dev/null
+done <<<"$pictures"
+
+echo "To open the window: $PWD/$cw2 $PWD/$scene"
+if [[ -t 1 && -n ${DISPLAY:-} ]]; then
+    exec "$cw2" "$scene"
+fi
