@@ -1,0 +1,61 @@
+// From the images that one map of a material names to its finished textures.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cw2-bake/read_image.h"
+#include "cw2-bake/source_scene.h"
+#include "cw2-bake/textures.h"
+
+namespace bake {
+
+/// What a material asks of one image, or of the two that make its surface.
+struct ImageRequest {
+    enum class Kind : std::uint8_t {
+        surface,  ///< base colour and alpha mask, which depend on each other
+        scalar,
+        normal,
+        bump,
+    };
+    Kind kind{};
+    std::optional<TextureMap> map{};        ///< of a surface: the base colour
+    std::optional<TextureMap> alpha_map{};  ///< of a surface; it or `map` is there
+    float alpha_cutoff = 0.0f;              ///< of a surface
+    float bump_scale = 0.0f;                ///< of a bump
+};
+
+/// The image that is read for a request whatever it holds.
+const std::filesystem::path& first_file(const ImageRequest& request);
+
+/// An image that cannot be used, and the line that says so.
+struct ImageWarning {
+    std::filesystem::path file;
+    std::string text;
+};
+
+struct ImageResult {
+    std::optional<Texture> texture;
+    std::optional<Texture> alpha_mask;
+    std::vector<ImageWarning> warnings;
+};
+
+/// The images that one thread works on.
+class ImageCache {
+ public:
+    /// The image, read when first asked for. Throws ImageError.
+    const Image& get(const std::filesystem::path& file);
+
+ private:
+    std::map<std::filesystem::path, Image> images_;
+};
+
+/// Reads and filters. A map whose image cannot be used counts as absent. What says nothing makes no
+/// texture: a mask that hides nothing, a normal map that is flat. An image of one value becomes
+/// 1 x 1.
+ImageResult make_textures(const ImageRequest& request, ImageCache& images);
+
+}  // namespace bake

@@ -1,0 +1,73 @@
+// Mip chains by exact area averages: a texel of a level is the mean of what it covers of the level
+// above it, so every level keeps the mean of level 0, for odd sizes too.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "mesh-format/layout.h"
+
+namespace bake {
+
+/// One level: rows from the top, channels interleaved.
+struct Level {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::uint32_t channels = 0;
+    std::vector<float> texels;
+
+    std::span<float> row(std::uint32_t y) {
+        const std::size_t length = std::size_t{width} * channels;
+        return {texels.data() + y * length, length};
+    }
+};
+
+/// Level 0 row by row, so that it is never in memory as floats: fills `texels` with row y.
+using RowSource = std::function<void(std::uint32_t y, std::span<float> texels)>;
+
+/// What level 0 is, and how its rows are read.
+struct TexelSource {
+    std::uint32_t width;
+    std::uint32_t height;
+    std::uint32_t channels;
+    RowSource read_row;
+};
+
+/// Writes one row of filtered texels as a texture's bytes.
+using RowEncoder = std::function<void(std::span<const float> texels, std::byte* out)>;
+
+/// The next level: the area average of `source`, each of whose rows is read once, in order.
+Level halve(const TexelSource& source);
+
+/// The texels of `level`, which must outlive the source.
+TexelSource source_of(Level& level);
+
+/// The complete payload of a texture, as mesh_format::TextureRecord describes it. Rows of level 0
+/// are encoded as they are read.
+std::vector<std::byte> filter_chain(mesh_format::TextureFormat format, const TexelSource& source,
+                                    const RowEncoder& encode);
+
+/// The payload of an alpha mask (r8_unorm; values in [0, 1]): each level is scaled so that the
+/// share of its texels at or above `cutoff` is that of level 0, as near as its texels allow.
+/// After Castano, "Computing alpha mipmaps", 2010.
+std::vector<std::byte> filter_mask(const TexelSource& source, float cutoff);
+
+/// The payload of the base colour (rgba8_srgb) under an alpha mask. `source` has four channels:
+/// linear red, green and blue, and 1; or four times 0 where the mask hides the texel. At least one
+/// is shown. Hidden texels count nowhere; at every level, 0 too, they continue the colours beside
+/// them, so that no filter draws a hidden colour into sight. `clamp`: the texture does not repeat.
+std::vector<std::byte> filter_masked_color(const TexelSource& source, bool clamp);
+
+/// The smallest value that is at or above `cutoff` once it is stored in 8 bits.
+float shown_from(float cutoff);
+
+/// Encoders: values in [0, 1] to r8_unorm; linear RGB to rgba8_srgb; vectors of any length but 0 to
+/// unit vectors in rgba8_unorm. Alpha is 255.
+void encode_unorm8(std::span<const float> texels, std::byte* out);
+void encode_srgb8(std::span<const float> texels, std::byte* out);
+void encode_normal8(std::span<const float> texels, std::byte* out);
+
+}  // namespace bake

@@ -1,0 +1,72 @@
+#include "cw2-bake/read_image.h"
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+namespace bake {
+namespace {
+
+/// The module lies beside the executable and stays loaded.
+ImageReader* load_image_reader() {
+    const std::filesystem::path module =
+        std::filesystem::read_symlink("/proc/self/exe").parent_path() / kImageReaderModule;
+    void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* symbol = handle ? dlsym(handle, kImageReaderSymbol) : nullptr;
+    if (!symbol) {
+        throw ImageError(std::string("no image can be read: ") + dlerror());
+    }
+    return reinterpret_cast<ImageReader*>(symbol);
+}
+
+/// Throws for what no decoder should be asked to open: a pipe would block it for ever.
+void check_regular_file(const std::filesystem::path& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (status.type() == std::filesystem::file_type::not_found) {
+        throw ImageError("no such file");
+    }
+    if (error) {
+        throw ImageError(error.message());
+    }
+    if (status.type() == std::filesystem::file_type::directory) {
+        throw ImageError("is a directory");
+    }
+    if (status.type() != std::filesystem::file_type::regular) {
+        throw ImageError("is not a regular file");
+    }
+    if (access(path.c_str(), R_OK) != 0) {
+        throw ImageError(std::strerror(errno));
+    }
+    if (std::filesystem::file_size(path, error) == 0) {
+        throw ImageError("is empty");
+    }
+}
+
+/// Messages of libraries may have several lines, and often end with one.
+std::string one_line(std::string text) {
+    while (!text.empty() && text.back() == '\n') {
+        text.pop_back();
+    }
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text.empty() ? "cannot be read" : text;
+}
+
+}  // namespace
+
+Image read_image(const std::filesystem::path& path) {
+    check_regular_file(path);
+    static ImageReader* const reader = load_image_reader();
+    Image image;
+    std::string error;
+    if (!reader(path.c_str(), image, error)) {
+        throw ImageError(one_line(std::move(error)));
+    }
+    return image;
+}
+
+}  // namespace bake

@@ -1,0 +1,45 @@
+// Image files to texels in memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace bake {
+
+enum class SampleType : std::uint8_t {
+    u8,   ///< 0..255 stands for 0..1
+    u16,  ///< 0..65535 stands for 0..1
+    f32,  ///< as it is; may be outside [0, 1] or not finite
+};
+
+/// The texels as the file states them: not premultiplied by alpha, in no other colour space than
+/// the file's. Rows follow each other from the top, tightly packed, channels interleaved.
+struct Image {
+    std::uint32_t width = 0;     ///< 1..mesh_format::kMaxTextureSize
+    std::uint32_t height = 0;    ///< 1..mesh_format::kMaxTextureSize
+    std::uint32_t channels = 0;  ///< 1..4: grey; grey and another; RGB; RGB and another
+    bool has_alpha = false;      ///< the last of 2 or 4 channels is alpha
+    SampleType type = SampleType::u8;
+    std::vector<std::byte> samples;
+};
+
+/// An image that cannot be read; what() is the cause, without the image's name.
+class ImageError : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Reads an image of any format that OpenImageIO knows, told by content where the extension
+/// misleads. Throws ImageError if there is none, or if it is damaged or larger than
+/// mesh_format::kMaxTextureSize. Callable from several threads.
+Image read_image(const std::filesystem::path& path);
+
+/// What the module image_reader exports: sets `image` and returns true, or sets `error`.
+using ImageReader = bool(const char* path, Image& image, std::string& error);
+inline constexpr const char* kImageReaderModule = "image_reader.so";
+inline constexpr const char* kImageReaderSymbol = "cw2_bake_image_reader";
+
+}  // namespace bake
