@@ -9,10 +9,6 @@ namespace mesh_format {
 
 namespace {
 
-std::string system_message(int code) {
-    return std::generic_category().message(code);
-}
-
 template <typename T>
 std::span<const std::byte> as_bytes(const T* data, std::size_t count) {
     return std::as_bytes(std::span<const T>(data, count));

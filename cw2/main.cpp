@@ -1,0 +1,48 @@
+// cw2: draws a baked scene, in a window or into a file.
+#include <cstdio>
+#include <exception>
+
+#include "cw2/device.h"
+#include "cw2/headless.h"
+#include "cw2/options.h"
+
+namespace {
+
+int run(const cw2::Options& options) {
+    if (options.list_views) {
+        for (cw2::View view = 0; view < cw2::kViewNames.size(); ++view) {
+            std::printf("%-16s %s\n", cw2::kViewNames[view].data(),
+                        cw2::kViewDescriptions[view].data());
+        }
+        return 0;
+    }
+    if (!options.list_devices && !options.output) {
+        throw cw2::UsageError("--output is missing");
+    }
+
+    const cw2::Instance instance(options.validation, {});
+    if (options.list_devices) {
+        for (const std::string& line : cw2::describe_devices(instance)) std::puts(line.c_str());
+        return 0;
+    }
+    {
+        const cw2::Device device(instance, options.device);
+        cw2::render_to_file(device, options);
+    }
+    return instance.validation_messages() == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const auto options = cw2::parse_options(argc, argv);
+        return options ? run(*options) : 0;
+    } catch (const cw2::UsageError& error) {
+        std::fprintf(stderr, "cw2: %s\n", error.what());
+        return 2;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "cw2: %s\n", error.what());
+        return 1;
+    }
+}

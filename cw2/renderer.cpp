@@ -1,0 +1,249 @@
+#include "cw2/renderer.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+namespace cw2 {
+
+namespace {
+
+constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+
+constexpr ImageUse kColorAttachmentUse{
+    VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT};
+
+constexpr ImageUse kDepthAttachmentUse{
+    VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT};
+
+/// The contents are discarded, but what used the image before must be over.
+ImageUse discarded(const ImageUse& use) {
+    return {VK_IMAGE_LAYOUT_UNDEFINED, use.stages, use.access};
+}
+
+void require_samples(const Device& device, VkFormat format, VkImageUsageFlags usage,
+                     VkSampleCountFlagBits samples) {
+    VkImageFormatProperties properties{};
+    const VkResult result =
+        vkGetPhysicalDeviceImageFormatProperties(device.physical(), format, VK_IMAGE_TYPE_2D,
+                                                 VK_IMAGE_TILING_OPTIMAL, usage, 0, &properties);
+    if (result != VK_SUCCESS || !(properties.sampleCounts & samples)) {
+        throw VulkanError(fmt::format("device '{}' cannot render with {} samples a pixel",
+                                      device.properties().deviceName, static_cast<int>(samples)));
+    }
+}
+
+QueryPool make_timestamps(const Device& device, std::uint32_t count) {
+    if (!device.properties().limits.timestampComputeAndGraphics) return {};
+    const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                     .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                     .queryCount = count};
+    VkQueryPool pool = VK_NULL_HANDLE;
+    check(vkCreateQueryPool(device.get(), &info, nullptr, &pool), "vkCreateQueryPool");
+    return {device.get(), pool};
+}
+
+}  // namespace
+
+Renderer::Renderer(const Device& device, const Layouts& layouts, const ShaderCode& code,
+                   VkFormat color_format, VkSampleCountFlagBits samples, std::uint32_t slots)
+    : device_(device),
+      layouts_(layouts),
+      formats_{color_format, kDepthFormat, samples},
+      pipelines_(device, layouts, code, formats_),
+      timestamps_(make_timestamps(device, 2 * slots)) {
+    require_samples(device, color_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, samples);
+    require_samples(device, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, samples);
+    make_slots(slots);
+}
+
+void Renderer::make_slots(std::uint32_t count) {
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, count};
+    const VkDescriptorPoolCreateInfo pool_info{
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+        .maxSets = count,
+        .poolSizeCount = 1,
+        .pPoolSizes = &size};
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    check(vkCreateDescriptorPool(device_.get(), &pool_info, nullptr, &pool),
+          "vkCreateDescriptorPool");
+    descriptor_pool_ = DescriptorPool(device_.get(), pool);
+
+    const VkDescriptorSetLayout layout = layouts_.scene_set.get();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Slot slot;
+        slot.uniforms = make_buffer(device_, sizeof(interop::SceneUniforms),
+                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::upload);
+        const VkDescriptorSetAllocateInfo info{
+            .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+            .descriptorPool = pool,
+            .descriptorSetCount = 1,
+            .pSetLayouts = &layout};
+        check(vkAllocateDescriptorSets(device_.get(), &info, &slot.set),
+              "vkAllocateDescriptorSets");
+        const VkDescriptorBufferInfo buffer{slot.uniforms.handle.get(), 0, VK_WHOLE_SIZE};
+        const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                         .dstSet = slot.set,
+                                         .dstBinding = interop::kSceneBinding,
+                                         .descriptorCount = 1,
+                                         .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+                                         .pBufferInfo = &buffer};
+        vkUpdateDescriptorSets(device_.get(), 1, &write, 0, nullptr);
+        slots_.push_back(std::move(slot));
+    }
+}
+
+void Renderer::use_shaders(const ShaderCode& code) {
+    pipelines_ = Pipelines(device_, layouts_, code, formats_);
+}
+
+void Renderer::resize(VkExtent2D extent) {
+    if (extent.width == extent_.width && extent.height == extent_.height) return;
+    // A frame of the old size may still be in flight.
+    check(vkDeviceWaitIdle(device_.get()), "vkDeviceWaitIdle");
+    depth_ = make_image(device_, {.format = kDepthFormat,
+                                  .extent = extent,
+                                  .samples = formats_.samples,
+                                  .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT});
+    if (formats_.samples != VK_SAMPLE_COUNT_1_BIT) {
+        multisampled_ = make_image(device_, {.format = formats_.color,
+                                             .extent = extent,
+                                             .samples = formats_.samples,
+                                             .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
+    }
+    extent_ = extent;
+}
+
+void Renderer::write_uniforms(const Slot& slot, const Scene& scene, VkExtent2D extent,
+                              const FrameSettings& settings) const {
+    const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
+    interop::SceneUniforms uniforms{};
+    uniforms.camera = view_from_world(settings.camera);
+    uniforms.projection =
+        clip_from_view(settings.camera.vertical_fov, aspect, near_distance(scene.bounds()));
+    uniforms.projCam = uniforms.projection * uniforms.camera;
+    uniforms.cameraPosition = settings.camera.position;
+    uniforms.lightPosition = settings.light.position;
+    uniforms.lightColor = settings.light.color;
+    uniforms.ambientColor = settings.light.ambient;
+    std::memcpy(slot.uniforms.mapped.data(), &uniforms, sizeof uniforms);
+}
+
+void Renderer::begin_attachments(VkCommandBuffer commands, const FrameTarget& target,
+                                 const FrameSettings& settings) const {
+    const bool multisample = formats_.samples != VK_SAMPLE_COUNT_1_BIT;
+    image_barrier(commands, target.image, VK_IMAGE_ASPECT_COLOR_BIT,
+                  {VK_IMAGE_LAYOUT_UNDEFINED, target.available_at, VK_ACCESS_2_NONE},
+                  kColorAttachmentUse);
+    image_barrier(commands, depth_.handle.get(), VK_IMAGE_ASPECT_DEPTH_BIT,
+                  discarded(kDepthAttachmentUse), kDepthAttachmentUse);
+    if (multisample) {
+        image_barrier(commands, multisampled_.handle.get(), VK_IMAGE_ASPECT_COLOR_BIT,
+                      discarded(kColorAttachmentUse), kColorAttachmentUse);
+    }
+
+    const glm::vec3& back = settings.background;
+    VkRenderingAttachmentInfo color{
+        .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+        .imageView = multisample ? multisampled_.view.get() : target.view,
+        .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+        .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+        .storeOp = multisample ? VK_ATTACHMENT_STORE_OP_DONT_CARE : VK_ATTACHMENT_STORE_OP_STORE,
+        .clearValue = {.color = {.float32 = {back.r, back.g, back.b, 0.0f}}}};
+    if (multisample) {
+        color.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
+        color.resolveImageView = target.view;
+        color.resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    }
+    const VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                          .imageView = depth_.view.get(),
+                                          .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                          .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                          .storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
+                                          .clearValue = {.depthStencil = {.depth = 0.0f}}};
+    const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                               .renderArea = {{0, 0}, target.extent},
+                               .layerCount = 1,
+                               .colorAttachmentCount = 1,
+                               .pColorAttachments = &color,
+                               .pDepthAttachment = &depth};
+    vkCmdBeginRendering(commands, &info);
+
+    const VkViewport viewport{.width = static_cast<float>(target.extent.width),
+                              .height = static_cast<float>(target.extent.height),
+                              .minDepth = 0.0f,
+                              .maxDepth = 1.0f};
+    const VkRect2D scissor{{0, 0}, target.extent};
+    vkCmdSetViewport(commands, 0, 1, &viewport);
+    vkCmdSetScissor(commands, 0, 1, &scissor);
+}
+
+void Renderer::draw(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
+                    const FrameSettings& settings) {
+    VkPipeline bound_pipeline = VK_NULL_HANDLE;
+    VkPipelineLayout bound_layout = VK_NULL_HANDLE;
+    VkDescriptorSet bound_material = VK_NULL_HANDLE;
+    for (const Draw& draw : scene.draws()) {
+        const VkPipeline pipeline = pipelines_.get(
+            {draw.shading, draw.forms, settings.view, settings.normal_map, settings.alpha_mask});
+        const VkPipelineLayout layout = layouts_.pipeline(draw.shading);
+        if (pipeline != bound_pipeline) {
+            vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+            bound_pipeline = pipeline;
+        }
+        if (layout != bound_layout) {
+            vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
+                                    interop::kSceneSet, 1, &scene_set, 0, nullptr);
+            bound_layout = layout;
+        }
+        if (draw.material != bound_material) {
+            vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
+                                    interop::kMaterialSet, 1, &draw.material, 0, nullptr);
+            bound_material = draw.material;
+        }
+        vkCmdPushConstants(commands, layout,
+                           VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                           sizeof draw.constants, &draw.constants);
+        vkCmdSetCullMode(commands, draw.cull_back ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE);
+        const VkBuffer vertices = scene.vertices();
+        vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &draw.vertex_offset);
+        vkCmdBindIndexBuffer(commands, scene.indices(), draw.index_offset, VK_INDEX_TYPE_UINT16);
+        vkCmdDrawIndexed(commands, draw.index_count, 1, 0, 0, 0);
+    }
+}
+
+void Renderer::write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 stage,
+                               std::uint32_t query) const {
+    if (timestamps_) vkCmdWriteTimestamp2(commands, stage, timestamps_.get(), query);
+}
+
+void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
+                      const FrameTarget& target, const FrameSettings& settings) {
+    resize(target.extent);
+    write_uniforms(slots_[slot], scene, target.extent, settings);
+    if (timestamps_) vkCmdResetQueryPool(commands, timestamps_.get(), 2 * slot, 2);
+    write_timestamp(commands, VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, 2 * slot);
+    begin_attachments(commands, target, settings);
+    draw(commands, slots_[slot].set, scene, settings);
+    vkCmdEndRendering(commands);
+    write_timestamp(commands, VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 2 * slot + 1);
+    // Resolving, too, is a colour attachment write.
+    image_barrier(commands, target.image, VK_IMAGE_ASPECT_COLOR_BIT, kColorAttachmentUse,
+                  target.after);
+}
+
+std::optional<double> Renderer::gpu_milliseconds(std::uint32_t slot) const {
+    if (!timestamps_) return std::nullopt;
+    std::uint64_t ticks[2];
+    const VkResult result =
+        vkGetQueryPoolResults(device_.get(), timestamps_.get(), 2 * slot, 2, sizeof ticks, ticks,
+                              sizeof ticks[0], VK_QUERY_RESULT_64_BIT);
+    if (result != VK_SUCCESS) return std::nullopt;
+    return static_cast<double>(ticks[1] - ticks[0]) *
+           static_cast<double>(device_.properties().limits.timestampPeriod) * 1e-6;
+}
+
+}  // namespace cw2

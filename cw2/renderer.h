@@ -1,0 +1,88 @@
+// Records the commands that draw a scene into an image; knows neither window nor file.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "cw2/camera.h"
+#include "cw2/device.h"
+#include "cw2/pipelines.h"
+#include "cw2/resources.h"
+#include "cw2/scene.h"
+#include "cw2/view.h"
+
+namespace cw2 {
+
+/// The image that a frame ends up in. Its old contents are discarded.
+struct FrameTarget {
+    VkImage image;
+    VkImageView view;
+    VkExtent2D extent;
+    /// The stage that whoever waits for the image's availability blocks.
+    VkPipelineStageFlags2 available_at;
+    ImageUse after;  ///< what it is used for next
+};
+
+/// What a frame shows.
+struct FrameSettings {
+    View view = interop::kViewShaded;
+    bool normal_map = true;
+    bool alpha_mask = true;
+    Camera camera{};
+    Light light{};
+    glm::vec3 background{0.1f};  ///< linear
+};
+
+class Renderer {
+ public:
+    /// Renders to targets of `color_format` with `samples` a pixel. `slots` frames may be in
+    /// flight at once. `device` and `layouts` must outlive this. Throws VulkanError, also where the
+    /// device cannot do that many samples.
+    Renderer(const Device& device, const Layouts& layouts, const ShaderCode& code,
+             VkFormat color_format, VkSampleCountFlagBits samples, std::uint32_t slots);
+
+    /// Records one frame. The slot's previous frame must be done.
+    void record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
+                const FrameTarget& target, const FrameSettings& settings);
+
+    /// From now on draws with these shaders. No frame may be in flight. Throws VulkanError, and
+    /// keeps the old ones.
+    void use_shaders(const ShaderCode& code);
+
+    /// Device time of the slot's last frame, once it is done; nothing where the device has no
+    /// timestamps.
+    std::optional<double> gpu_milliseconds(std::uint32_t slot) const;
+
+ private:
+    struct Slot {
+        Buffer uniforms;
+        VkDescriptorSet set;
+    };
+
+    void make_slots(std::uint32_t count);
+    void resize(VkExtent2D extent);
+    void write_uniforms(const Slot& slot, const Scene& scene, VkExtent2D extent,
+                        const FrameSettings& settings) const;
+    void begin_attachments(VkCommandBuffer commands, const FrameTarget& target,
+                           const FrameSettings& settings) const;
+    void draw(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
+              const FrameSettings& settings);
+    void write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 stage,
+                         std::uint32_t query) const;
+
+    const Device& device_;
+    const Layouts& layouts_;
+    AttachmentFormats formats_;
+    Pipelines pipelines_;
+    DescriptorPool descriptor_pool_;
+    std::vector<Slot> slots_;
+    QueryPool timestamps_;  ///< two a slot; empty where the device has none
+    VkExtent2D extent_{};
+    Image depth_;
+    Image multisampled_;  ///< empty with one sample a pixel
+};
+
+}  // namespace cw2

@@ -1,0 +1,76 @@
+// A baked scene on the device.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "cw2/camera.h"
+#include "cw2/device.h"
+#include "cw2/pipelines.h"
+#include "cw2/resources.h"
+#include "cw2/vk_handle.h"
+#include "mesh-format/file.h"
+#include "shaders/interop.h"
+
+namespace cw2 {
+
+/// One indexed draw: a mesh with its material.
+struct Draw {
+    interop::DrawConstants constants;
+    VertexForms forms;
+    Shading shading;
+    bool cull_back;
+    VkDescriptorSet material;
+    VkDeviceSize vertex_offset;  ///< bytes
+    VkDeviceSize index_offset;   ///< bytes
+    std::uint32_t index_count;
+};
+
+class Scene {
+ public:
+    /// Uploads `document`, which is not needed afterwards. `anisotropy` is the samplers' largest
+    /// ratio, 1 for none. Throws VulkanError.
+    Scene(const Device& device, const Layouts& layouts, const mesh_format::Document& document,
+          float anisotropy);
+
+    const Bounds& bounds() const { return bounds_; }
+    /// Opaque draws before alpha-masked ones, in each part those of one material together.
+    const std::vector<Draw>& draws() const { return draws_; }
+    VkBuffer vertices() const { return vertices_.handle.get(); }
+    VkBuffer indices() const { return indices_.handle.get(); }
+    std::uint64_t triangle_count() const;
+
+ private:
+    struct Texture {
+        ImageHandle image;
+        ImageView view;
+        bool clamp;
+    };
+
+    void upload_textures(const Device& device, const mesh_format::Document& document,
+                         Uploader& uploader);
+    std::vector<VkDescriptorSet> make_material_sets(const Device& device, const Layouts& layouts,
+                                                    const mesh_format::Document& document);
+    void write_material_set(const Device& device, VkDescriptorSet set,
+                            const mesh_format::MaterialRecord& material) const;
+
+    Bounds bounds_;
+    Buffer vertices_;
+    Buffer indices_;
+    std::vector<Memory> texture_memory_;
+    std::vector<Texture> textures_;  ///< the document's, then a white texel for what is absent
+    Sampler repeat_;
+    Sampler clamp_;
+    DescriptorPool descriptor_pool_;
+    std::vector<Draw> draws_;
+};
+
+/// Reads, checks and uploads a .cw2mesh file. Throws mesh_format::FileError (a source format is
+/// told to be baked first, with the command) or VulkanError.
+Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
+                 float anisotropy);
+
+}  // namespace cw2

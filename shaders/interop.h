@@ -1,0 +1,99 @@
+// What GLSL and C++ share: structures, bindings, constants. Both languages include this file; it
+// is the only definition of any of them.
+#ifndef CW2_SHADERS_INTEROP_H
+#define CW2_SHADERS_INTEROP_H
+
+#ifdef __cplusplus
+#include <cstddef>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#define CW2_STD140 alignas(16)
+#define CW2_CONSTANT inline constexpr
+namespace cw2::interop {
+using glm::ivec3;
+using glm::mat4;
+using glm::vec2;
+using glm::vec3;
+using uint = unsigned int;
+#else
+#define CW2_STD140
+#define CW2_CONSTANT const
+#endif
+
+// Set 0: the scene, bound once a frame, seen by both stages.
+struct SceneUniforms {
+    mat4 camera;                     // view from world
+    mat4 projection;                 // clip from view; depth 1 at the near plane, 0 at infinity
+    mat4 projCam;                    // clip from world
+    CW2_STD140 vec3 cameraPosition;  // world
+    CW2_STD140 vec3 lightPosition;   // world
+    CW2_STD140 vec3 lightColor;      // linear
+    CW2_STD140 vec3 ambientColor;    // linear
+};
+CW2_CONSTANT uint kSceneSet = 0;
+CW2_CONSTANT uint kSceneBinding = 0;
+
+// Set 1: the material, bound when it changes, fragment stage only. The opaque pipeline's layout
+// has the first four bindings, the alpha-mask pipeline's all five.
+CW2_CONSTANT uint kMaterialSet = 1;
+CW2_CONSTANT uint kBaseColorBinding = 0;
+CW2_CONSTANT uint kRoughnessBinding = 1;
+CW2_CONSTANT uint kMetalnessBinding = 2;
+CW2_CONSTANT uint kNormalMapBinding = 3;
+CW2_CONSTANT uint kAlphaMaskBinding = 4;
+
+// Push constants: what the packed vertices of one mesh need, and its material's factors.
+struct DrawConstants {
+    ivec3 position_origin;  // lattice units
+    float position_step;    // world units
+    vec2 uv_origin;
+    vec2 uv_step;
+    vec3 base_color;  // linear
+    float roughness;
+    float metalness;
+    float alpha_cutoff;
+    uint has_normal_map;  // 0 or 1
+};
+
+// Vertex inputs; all are read as unsigned integers of the width their form has.
+CW2_CONSTANT uint kPositionLocation = 0;
+CW2_CONSTANT uint kFrameLocation = 1;
+CW2_CONSTANT uint kUvLocation = 2;
+
+// Specialisation constants. The forms are mesh_format's enumerations.
+CW2_CONSTANT uint kPositionFormConstant = 0;
+CW2_CONSTANT uint kFrameFormConstant = 1;
+CW2_CONSTANT uint kUvFormConstant = 2;
+CW2_CONSTANT uint kViewConstant = 3;
+CW2_CONSTANT uint kNormalMapConstant = 4;  // 0: the vertex normal shades
+CW2_CONSTANT uint kAlphaMaskConstant = 5;  // 0: nothing is discarded
+
+// What a fragment shows; cw2/view.h names them.
+CW2_CONSTANT uint kViewShaded = 0;
+CW2_CONSTANT uint kViewNormal = 1;
+CW2_CONSTANT uint kViewVertexNormal = 2;
+CW2_CONSTANT uint kViewViewDirection = 3;
+CW2_CONSTANT uint kViewLightDirection = 4;
+CW2_CONSTANT uint kViewDiffuse = 5;
+CW2_CONSTANT uint kViewSpecular = 6;
+CW2_CONSTANT uint kViewDistribution = 7;
+CW2_CONSTANT uint kViewMasking = 8;
+CW2_CONSTANT uint kViewFresnel = 9;
+CW2_CONSTANT uint kViewBaseColor = 10;
+CW2_CONSTANT uint kViewRoughness = 11;
+CW2_CONSTANT uint kViewMetalness = 12;
+CW2_CONSTANT uint kViewTangent = 13;
+CW2_CONSTANT uint kViewBitangent = 14;
+CW2_CONSTANT uint kViewUv = 15;
+CW2_CONSTANT uint kViewAlphaMask = 16;
+CW2_CONSTANT uint kViewCount = 17;
+
+#ifdef __cplusplus
+static_assert(offsetof(SceneUniforms, cameraPosition) == 192);
+static_assert(offsetof(SceneUniforms, ambientColor) == 240 && sizeof(SceneUniforms) == 256);
+static_assert(offsetof(DrawConstants, base_color) == 32 && sizeof(DrawConstants) == 60);
+}  // namespace cw2::interop
+#endif
+
+#endif

@@ -1,0 +1,33 @@
+// Unpacks a vertex into world space; both pipelines share it.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "shaders/interop.h"
+#include "shaders/tangent_frame.glsl"
+
+layout(constant_id = kPositionFormConstant) const uint position_form = 0;
+layout(constant_id = kFrameFormConstant) const uint frame_form = 0;
+layout(constant_id = kUvFormConstant) const uint uv_form = 0;
+
+layout(set = kSceneSet, binding = kSceneBinding, std140) uniform Scene { SceneUniforms scene; };
+layout(push_constant) uniform Draw { DrawConstants draw; };
+
+layout(location = kPositionLocation) in uvec4 position_words;
+layout(location = kFrameLocation) in uvec4 frame_words;
+layout(location = kUvLocation) in uvec2 uv_words;
+
+layout(location = 0) out vec3 world_position;
+layout(location = 1) out vec3 world_normal;
+layout(location = 2) out vec3 world_tangent;
+layout(location = 3) flat out float handedness;
+layout(location = 4) out vec2 uv;
+
+void main() {
+    // Integers below 2^24 times a power of two: exact, so equal positions stay equal across meshes.
+    world_position = position_form == 0
+                         ? vec3(draw.position_origin + ivec3(position_words.xyz)) * draw.position_step
+                         : uintBitsToFloat(position_words.xyz);
+    uv = uv_form == 0 ? draw.uv_origin + draw.uv_step * vec2(uv_words) : uintBitsToFloat(uv_words);
+    decode_frame(frame_form, frame_words, world_tangent, world_normal, handedness);
+    gl_Position = scene.projCam * vec4(world_position, 1.0);
+}

@@ -1,0 +1,72 @@
+// Shades a fragment in world space; the body of both pipelines' fragment shaders.
+#include "shaders/brdf.glsl"
+#include "shaders/interop.h"
+
+layout(constant_id = kViewConstant) const uint view = kViewShaded;
+layout(constant_id = kNormalMapConstant) const uint use_normal_map = 1;
+
+layout(set = kSceneSet, binding = kSceneBinding, std140) uniform Scene { SceneUniforms scene; };
+layout(push_constant) uniform Draw { DrawConstants draw; };
+
+layout(set = kMaterialSet, binding = kBaseColorBinding) uniform sampler2D base_color_map;
+layout(set = kMaterialSet, binding = kRoughnessBinding) uniform sampler2D roughness_map;
+layout(set = kMaterialSet, binding = kMetalnessBinding) uniform sampler2D metalness_map;
+layout(set = kMaterialSet, binding = kNormalMapBinding) uniform sampler2D normal_map;
+
+layout(location = 0) in vec3 world_position;
+layout(location = 1) in vec3 world_normal;
+layout(location = 2) in vec3 world_tangent;
+layout(location = 3) flat in float handedness;
+layout(location = 4) in vec2 uv;
+
+layout(location = 0) out vec4 color;
+
+// In MikkTSpace's way: the bitangent from the interpolated normal and tangent as they are, only
+// the sum is normalised.
+vec3 shading_normal() {
+    if (use_normal_map == 0 || draw.has_normal_map == 0) return normalize(world_normal);
+    const vec3 t = texture(normal_map, uv).xyz * 2.0 - 1.0;
+    const vec3 bitangent = handedness * cross(world_normal, world_tangent);
+    return normalize(t.x * world_tangent + t.y * bitangent + t.z * world_normal);
+}
+
+Surface surface_at_fragment() {
+    Surface surface;
+    surface.base_color = draw.base_color * texture(base_color_map, uv).rgb;
+    surface.alpha = draw.roughness * texture(roughness_map, uv).r;
+    surface.metalness = draw.metalness * texture(metalness_map, uv).r;
+    surface.normal = shading_normal();
+    return surface;
+}
+
+// A direction as a colour.
+vec3 as_color(vec3 direction) { return 0.5 * direction + 0.5; }
+
+// The linear value that the chosen view shows; `alpha_mask` is what the mask holds here.
+vec3 view_color(float alpha_mask) {
+    const Surface surface = surface_at_fragment();
+    const vec3 l = normalize(scene.lightPosition - world_position);
+    const vec3 v = normalize(scene.cameraPosition - world_position);
+    const Brdf brdf = evaluate_brdf(surface, l, v);
+    switch (view) {
+        case kViewNormal: return as_color(surface.normal);
+        case kViewVertexNormal: return as_color(normalize(world_normal));
+        case kViewViewDirection: return as_color(v);
+        case kViewLightDirection: return as_color(l);
+        case kViewDiffuse: return brdf.diffuse;
+        case kViewSpecular: return brdf.specular;
+        case kViewDistribution: return vec3(brdf.distribution);
+        case kViewMasking: return vec3(brdf.masking);
+        case kViewFresnel: return brdf.fresnel;
+        case kViewBaseColor: return surface.base_color;
+        case kViewRoughness: return vec3(surface.alpha);
+        case kViewMetalness: return vec3(surface.metalness);
+        case kViewTangent: return as_color(normalize(world_tangent));
+        case kViewBitangent:
+            return as_color(normalize(handedness * cross(world_normal, world_tangent)));
+        case kViewUv: return vec3(fract(uv), 0.0);
+        case kViewAlphaMask: return vec3(alpha_mask);
+    }
+    return scene.ambientColor * surface.base_color +
+           scene.lightColor * (brdf.diffuse * brdf.n_dot_l + brdf.specular_n_dot_l);
+}
