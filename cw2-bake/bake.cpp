@@ -1,0 +1,160 @@
+#include "cw2-bake/bake.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "cw2-bake/framed_mesh.h"
+#include "cw2-bake/normals.h"
+#include "cw2-bake/progress.h"
+#include "cw2-bake/quantise.h"
+#include "cw2-bake/read_obj.h"
+#include "cw2-bake/report.h"
+#include "cw2-bake/textures.h"
+#include "cw2-bake/up_axis.h"
+#include "cw2-bake/weld.h"
+#include "mesh-format/file.h"
+
+namespace bake {
+
+namespace {
+
+using mesh_format::kNoTexture;
+using mesh_format::MaterialRecord;
+using mesh_format::StringRef;
+using mesh_format::TextureRecord;
+
+/// Welds, frames and cuts the scene's triangles; the meshes come in the order of their materials.
+std::vector<FramedMesh> make_meshes(const SourceScene& scene) {
+    const std::vector<WeldedMesh> welded = weld(scene);
+    std::vector<std::vector<FramedMesh>> pieces(welded.size());
+    tbb::parallel_for(std::size_t{0}, welded.size(),
+                      [&](std::size_t i) { pieces[i] = partition(add_tangents(welded[i])); });
+    std::vector<FramedMesh> meshes;
+    for (auto& part : pieces) std::move(part.begin(), part.end(), std::back_inserter(meshes));
+    return meshes;
+}
+
+TextureSet make_textures(const Settings& settings, const SourceScene& scene, const Warn& warn) {
+    if (settings.textures == TextureMode::none) {
+        return {.textures = {}, .materials = std::vector<MaterialTextures>(scene.materials.size())};
+    }
+    ProgressBar bar(!settings.quiet);
+    return bake_textures(scene.materials, warn,
+                         [&bar](double done, std::string_view name) { bar.update(done, name); });
+}
+
+std::vector<UvBudget> uv_budgets(const TextureSet& textures) {
+    std::vector<UvBudget> budgets;
+    for (const MaterialTextures& material : textures.materials) {
+        UvBudget budget;
+        std::uint32_t longest = 0;
+        for (const std::uint32_t index :
+             {material.base_color, material.roughness, material.metalness, material.normal,
+              material.alpha_mask}) {
+            if (index == kNoTexture) continue;
+            const Texture& texture = textures.textures[index];
+            longest = std::max({longest, texture.width, texture.height});
+            budget.shiftable = budget.shiftable && !texture.clamp;
+        }
+        if (longest > 0) budget.texels = longest;
+        budgets.push_back(budget);
+    }
+    return budgets;
+}
+
+/// The tables of the file that do not hold geometry, and what they point into.
+struct Tables {
+    std::vector<MaterialRecord> materials;
+    std::vector<TextureRecord> textures;
+    std::string strings;
+    std::vector<std::byte> texels;
+
+    StringRef add(std::string_view text) {
+        const StringRef ref{static_cast<std::uint32_t>(strings.size()),
+                            static_cast<std::uint32_t>(text.size())};
+        strings += text;
+        return ref;
+    }
+};
+
+MaterialRecord material_record(const SourceMaterial& source, const MaterialTextures& textures,
+                               StringRef name) {
+    MaterialRecord record{};
+    record.name = name;
+    for (int channel = 0; channel < 3; ++channel) {
+        record.base_color[channel] = source.base_color[channel];
+    }
+    record.roughness = source.roughness;
+    record.metalness = source.metalness;
+    record.alpha_cutoff = source.alpha_cutoff;
+    if (textures.alpha_mask != kNoTexture) record.flags |= mesh_format::kAlphaMask;
+    if (source.cull_back) record.flags |= mesh_format::kCullBack;
+    record.base_color_texture = textures.base_color;
+    record.roughness_texture = textures.roughness;
+    record.metalness_texture = textures.metalness;
+    record.normal_texture = textures.normal;
+    record.alpha_mask_texture = textures.alpha_mask;
+    return record;
+}
+
+/// Takes the payloads out of `set`, so that no texel is held twice for long.
+Tables make_tables(const std::vector<SourceMaterial>& materials, TextureSet& set) {
+    Tables tables;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const StringRef name = tables.add(materials[i].name);
+        tables.materials.push_back(material_record(materials[i], set.materials[i], name));
+    }
+    std::uint64_t texel_bytes = 0;
+    for (const Texture& texture : set.textures) texel_bytes += texture.payload.size();
+    tables.texels.reserve(texel_bytes);
+    for (Texture& texture : set.textures) {
+        tables.textures.push_back(
+            {.name = tables.add(texture.name),
+             .format = texture.format,
+             .flags = texture.clamp ? mesh_format::kClampToEdge : 0u,
+             .width = texture.width,
+             .height = texture.height,
+             .mip_count = mesh_format::full_mip_count(texture.width, texture.height),
+             .reserved = 0,
+             .offset = tables.texels.size(),
+             .size = texture.payload.size()});
+        tables.texels.insert(tables.texels.end(), texture.payload.begin(), texture.payload.end());
+        texture.payload = {};
+    }
+    return tables;
+}
+
+}  // namespace
+
+std::string bake(const Settings& settings, const Warn& warn) {
+    const std::size_t threads = settings.threads > 0 ? static_cast<std::size_t>(settings.threads)
+                                                     : std::thread::hardware_concurrency();
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    std::max<std::size_t>(threads, 1));
+
+    SourceScene scene = read_obj(settings.input, warn);
+    if (settings.z_up) turn_z_up(scene);
+    generate_normals(scene);
+    const std::vector<FramedMesh> meshes = make_meshes(scene);
+    TextureSet textures = make_textures(settings, scene, warn);
+    const PackedGeometry geometry =
+        quantise(meshes, uv_budgets(textures), {settings.frame_form, settings.position_form});
+    const Tables tables = make_tables(scene.materials, textures);
+
+    const mesh_format::Document document{.scene = geometry.scene,
+                                         .meshes = geometry.meshes,
+                                         .materials = tables.materials,
+                                         .textures = tables.textures,
+                                         .strings = tables.strings,
+                                         .vertices = geometry.vertices,
+                                         .indices = geometry.indices,
+                                         .texels = tables.texels};
+    const std::uint64_t bytes = mesh_format::write(document, settings.output);
+    return fmt::format("{}\n{}", settings.output.string(), summary(document, bytes));
+}
+
+}  // namespace bake

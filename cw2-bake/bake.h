@@ -1,0 +1,15 @@
+// The bake: the order of its stages.
+#pragma once
+
+#include <string>
+
+#include "cw2-bake/diagnostics.h"
+#include "cw2-bake/settings.h"
+
+namespace bake {
+
+/// Bakes settings.input into settings.output and returns the closing summary. Throws BakeError or
+/// mesh_format::FileError; the output is then as it was.
+std::string bake(const Settings& settings, const Warn& warn);
+
+}  // namespace bake

@@ -1,0 +1,30 @@
+// Vertices with their tangents, in pieces that 16-bit indices can address.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "cw2-bake/weld.h"
+
+namespace bake {
+
+/// Triangles of one material; a vertex has one tangent.
+struct FramedMesh {
+    std::uint32_t material = 0;
+    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec2> uvs;
+    std::vector<glm::vec4> tangents;  ///< see tangents.h
+    std::vector<std::uint32_t> indices;
+};
+
+/// Gives `mesh` its tangents: vertices whose corners differ in them are split. Vertices come in
+/// the order of their first use.
+FramedMesh add_tangents(const WeldedMesh& mesh);
+
+/// Cuts `mesh` into meshes of at most mesh_format::kMaxMeshVertices vertices, triangles in order.
+std::vector<FramedMesh> partition(FramedMesh mesh);
+
+}  // namespace bake

@@ -1,0 +1,45 @@
+// cw2-bake: turns an OBJ into a .cw2mesh file, and tells what is in one.
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "cw2-bake/bake.h"
+#include "cw2-bake/report.h"
+#include "cw2-bake/settings.h"
+#include "mesh-format/file.h"
+
+namespace {
+
+void inspect(const bake::Settings& settings) {
+    const mesh_format::MappedFile file(settings.input);
+    const auto document = mesh_format::parse(file.bytes(), settings.input.string());
+    const std::string text = settings.json ? bake::inspection_json(document, file.bytes().size())
+                                           : settings.input.string() + '\n' +
+                                                 bake::inspection(document, file.bytes().size());
+    std::fputs(text.c_str(), stdout);
+}
+
+void run(const bake::Settings& settings) {
+    if (settings.inspect) return inspect(settings);
+    const std::string summary = bake::bake(settings, [&](const std::string& warning) {
+        if (settings.strict) throw bake::BakeError(warning);
+        if (!settings.quiet) std::fprintf(stderr, "cw2-bake: warning: %s\n", warning.c_str());
+    });
+    if (!settings.quiet) std::fputs(summary.c_str(), stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const auto settings = bake::parse_settings(argc, argv);
+        if (settings) run(*settings);
+        return 0;
+    } catch (const bake::UsageError& error) {
+        std::fprintf(stderr, "cw2-bake: %s\n", error.what());
+        return 2;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "cw2-bake: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,30 @@
+// A progress bar for a person who waits.
+#pragma once
+
+#include <chrono>
+#include <string_view>
+
+namespace bake {
+
+/// Draws a bar on standard error once the work has taken a second, if that is a terminal; erases
+/// it when destroyed.
+class ProgressBar {
+ public:
+    /// With `enabled` false nothing is ever drawn.
+    explicit ProgressBar(bool enabled);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+
+    /// `done` in [0, 1]; `what` is at work.
+    void update(double done, std::string_view what);
+
+ private:
+    using Clock = std::chrono::steady_clock;
+
+    bool enabled_;
+    bool drawn_ = false;
+    Clock::time_point next_draw_;
+};
+
+}  // namespace bake

@@ -1,0 +1,42 @@
+// Vertices to their packed form, and the error that this makes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cw2-bake/framed_mesh.h"
+#include "mesh-format/layout.h"
+
+namespace bake {
+
+struct QuantiseSettings {
+    mesh_format::FrameForm frame_form;
+    mesh_format::PositionForm position_form;  ///< f32 keeps UVs as floats, too
+};
+
+/// What quantise needs to know of a material.
+struct UvBudget {
+    std::uint32_t texels = 1024;  ///< the longest side of its textures
+    bool shiftable = true;        ///< all its textures repeat: whole numbers may be subtracted
+};
+
+/// The packed form of all meshes: the sections of the file that hold geometry.
+struct PackedGeometry {
+    mesh_format::SceneRecord scene{};
+    std::vector<mesh_format::MeshRecord> meshes;  ///< as the input, in its order
+    std::vector<std::byte> vertices;
+    std::vector<std::uint16_t> indices;
+};
+
+/// Packs `meshes`, which together are the scene; at most kMaxMeshVertices vertices each.
+/// `materials` has an entry for each material.
+///
+/// Positions go to one lattice of a power-of-two step, the finest on which every mesh spans at
+/// most 65,536 points and every coordinate stays below 2^24 steps from the origin. UVs go to a
+/// lattice for each mesh; where half its step exceeds 1/8 texel the mesh keeps float UVs.
+PackedGeometry quantise(std::span<const FramedMesh> meshes, std::span<const UvBudget> materials,
+                        const QuantiseSettings& settings);
+
+}  // namespace bake

@@ -1,0 +1,240 @@
+#include "cw2-bake/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace bake {
+
+namespace {
+
+using mesh_format::Document;
+using mesh_format::FrameForm;
+using mesh_format::MaterialRecord;
+using mesh_format::MeshRecord;
+using mesh_format::PositionForm;
+using mesh_format::TextureFormat;
+using mesh_format::TextureRecord;
+using mesh_format::UvForm;
+
+const char* name_of(PositionForm form) {
+    return form == PositionForm::quantised ? "quantised" : "f32";
+}
+const char* name_of(UvForm form) {
+    return form == UvForm::quantised ? "quantised" : "f32";
+}
+const char* name_of(FrameForm form) {
+    switch (form) {
+        case FrameForm::quat48:
+            return "quat48";
+        case FrameForm::quat32:
+            return "quat32";
+        case FrameForm::half3:
+            return "half3";
+        case FrameForm::f32:
+            return "f32";
+    }
+    return "";
+}
+const char* name_of(TextureFormat format) {
+    switch (format) {
+        case TextureFormat::r8_unorm:
+            return "r8_unorm";
+        case TextureFormat::rgba8_unorm:
+            return "rgba8_unorm";
+        case TextureFormat::rgba8_srgb:
+            return "rgba8_srgb";
+    }
+    return "";
+}
+
+struct Counts {
+    std::uint64_t vertices = 0;
+    std::uint64_t triangles = 0;
+    std::size_t masked_materials = 0;
+    float extent = 0.0f;  ///< longest side of the bounding box
+};
+
+Counts count(const Document& document) {
+    Counts counts;
+    for (const MeshRecord& mesh : document.meshes) {
+        counts.vertices += mesh.vertex_count;
+        counts.triangles += mesh.index_count / 3;
+    }
+    for (const MaterialRecord& material : document.materials) {
+        if (material.flags & mesh_format::kAlphaMask) ++counts.masked_materials;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        counts.extent = std::max(counts.extent,
+                                 document.scene.bounds_max[axis] - document.scene.bounds_min[axis]);
+    }
+    return counts;
+}
+
+/// 1234567 -> "1,234,567".
+std::string grouped(std::uint64_t number) {
+    std::string text = std::to_string(number);
+    for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) {
+        text.insert(static_cast<std::size_t>(at), 1, ',');
+    }
+    return text;
+}
+
+std::string position_error(const Document& document, const Counts& counts) {
+    const float error = document.scene.position_error;
+    if (error == 0.0f) return "0";
+    return fmt::format("{:.2g} (1/{} of the extent)", error,
+                       grouped(static_cast<std::uint64_t>(counts.extent / error)));
+}
+
+std::string json_text(std::string_view text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') {
+            quoted += '\\';
+            quoted += c;
+        } else if (static_cast<unsigned char>(c) < 0x20) {
+            quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        } else {
+            quoted += c;
+        }
+    }
+    return quoted + '"';
+}
+
+std::string json_texture(std::uint32_t index) {
+    return index == mesh_format::kNoTexture ? "null" : std::to_string(index);
+}
+
+void list_meshes(const Document& document, std::string& out) {
+    for (std::size_t i = 0; i < document.meshes.size(); ++i) {
+        const MeshRecord& mesh = document.meshes[i];
+        fmt::format_to(std::back_inserter(out),
+                       "mesh {}: {} vertices, {} triangles, material {}, position {}, frame {}, "
+                       "uv {}\n",
+                       i, grouped(mesh.vertex_count), grouped(mesh.index_count / 3), mesh.material,
+                       name_of(mesh.position_form), name_of(mesh.frame_form),
+                       name_of(mesh.uv_form));
+    }
+}
+
+void list_materials(const Document& document, std::string& out) {
+    for (std::size_t i = 0; i < document.materials.size(); ++i) {
+        const MaterialRecord& material = document.materials[i];
+        fmt::format_to(std::back_inserter(out),
+                       "material {} '{}': base colour {:.3g} {:.3g} {:.3g}, roughness {:.3g}, "
+                       "metalness {:.3g}",
+                       i, document.text(material.name), material.base_color[0],
+                       material.base_color[1], material.base_color[2], material.roughness,
+                       material.metalness);
+        const auto texture = [&](const char* use, std::uint32_t index) {
+            if (index != mesh_format::kNoTexture) {
+                fmt::format_to(std::back_inserter(out), ", {} texture {}", use, index);
+            }
+        };
+        texture("base colour", material.base_color_texture);
+        texture("roughness", material.roughness_texture);
+        texture("metalness", material.metalness_texture);
+        texture("normal", material.normal_texture);
+        texture("alpha mask", material.alpha_mask_texture);
+        out += '\n';
+    }
+}
+
+void list_textures(const Document& document, std::string& out) {
+    for (std::size_t i = 0; i < document.textures.size(); ++i) {
+        const TextureRecord& texture = document.textures[i];
+        fmt::format_to(std::back_inserter(out), "texture {} '{}': {} x {} {}, {} bytes{}\n", i,
+                       document.text(texture.name), texture.width, texture.height,
+                       name_of(texture.format), grouped(texture.size),
+                       texture.flags & mesh_format::kClampToEdge ? ", clamped" : "");
+    }
+}
+
+/// A JSON array with one element a record.
+template <typename Records, typename Format>
+std::string json_array(const Records& records, Format format) {
+    std::string out = "[";
+    for (const auto& record : records) {
+        out += (out.size() > 1 ? ",\n    " : "\n    ") + format(record);
+    }
+    return out + (out.size() > 1 ? "\n  ]" : "]");
+}
+
+}  // namespace
+
+std::string summary(const Document& document, std::uint64_t file_bytes) {
+    const Counts counts = count(document);
+    const std::uint64_t data_bytes =
+        document.vertices.size() + document.indices.size_bytes() + document.texels.size();
+    return fmt::format(
+        "  {} vertices, {} triangles, {} meshes, {} materials ({} alpha-masked), {} textures\n"
+        "  {} bytes: vertices {}, indices {}, texels {}, tables {}\n"
+        "  largest errors: position {}; frame {:.4f} degrees (mean {:.4f}); UV {:.3f} texel\n",
+        grouped(counts.vertices), grouped(counts.triangles), document.meshes.size(),
+        document.materials.size(), counts.masked_materials, document.textures.size(),
+        grouped(file_bytes), grouped(document.vertices.size()),
+        grouped(document.indices.size_bytes()), grouped(document.texels.size()),
+        grouped(file_bytes - data_bytes), position_error(document, counts),
+        document.scene.frame_error_max, document.scene.frame_error_mean, document.scene.uv_error);
+}
+
+std::string inspection(const Document& document, std::uint64_t file_bytes) {
+    std::string out = summary(document, file_bytes);
+    const auto& scene = document.scene;
+    fmt::format_to(std::back_inserter(out), "  box from {} {} {} to {} {} {}, radius {}\n",
+                   scene.bounds_min[0], scene.bounds_min[1], scene.bounds_min[2],
+                   scene.bounds_max[0], scene.bounds_max[1], scene.bounds_max[2], scene.radius);
+    list_meshes(document, out);
+    list_materials(document, out);
+    list_textures(document, out);
+    return out;
+}
+
+std::string inspection_json(const Document& document, std::uint64_t file_bytes) {
+    const Counts counts = count(document);
+    const auto& scene = document.scene;
+    const std::string meshes = json_array(document.meshes, [](const MeshRecord& mesh) {
+        return fmt::format(
+            "{{\"vertices\": {}, \"triangles\": {}, \"material\": {}, \"position\": \"{}\", "
+            "\"frame\": \"{}\", \"uv\": \"{}\"}}",
+            mesh.vertex_count, mesh.index_count / 3, mesh.material, name_of(mesh.position_form),
+            name_of(mesh.frame_form), name_of(mesh.uv_form));
+    });
+    const std::string materials =
+        json_array(document.materials, [&](const MaterialRecord& material) {
+            return fmt::format(
+                "{{\"name\": {}, \"base_color\": [{}, {}, {}], \"roughness\": {}, "
+                "\"metalness\": {}, \"alpha_mask\": {}, \"base_color_texture\": {}, "
+                "\"roughness_texture\": {}, \"metalness_texture\": {}, \"normal_texture\": {}, "
+                "\"alpha_mask_texture\": {}}}",
+                json_text(document.text(material.name)), material.base_color[0],
+                material.base_color[1], material.base_color[2], material.roughness,
+                material.metalness, (material.flags & mesh_format::kAlphaMask) != 0,
+                json_texture(material.base_color_texture), json_texture(material.roughness_texture),
+                json_texture(material.metalness_texture), json_texture(material.normal_texture),
+                json_texture(material.alpha_mask_texture));
+        });
+    const std::string textures = json_array(document.textures, [&](const TextureRecord& texture) {
+        return fmt::format(
+            "{{\"name\": {}, \"format\": \"{}\", \"width\": {}, \"height\": {}, \"mips\": {}, "
+            "\"bytes\": {}}}",
+            json_text(document.text(texture.name)), name_of(texture.format), texture.width,
+            texture.height, texture.mip_count, texture.size);
+    });
+    return fmt::format(
+        "{{\n  \"format_version\": {},\n  \"bytes\": {},\n  \"vertex_bytes\": {},\n"
+        "  \"index_bytes\": {},\n  \"texel_bytes\": {},\n  \"vertices\": {},\n"
+        "  \"triangles\": {},\n  \"bounds_min\": [{}, {}, {}],\n  \"bounds_max\": [{}, {}, {}],\n"
+        "  \"radius\": {},\n  \"position_error\": {},\n  \"frame_error_mean_degrees\": {},\n"
+        "  \"frame_error_max_degrees\": {},\n  \"uv_error_texels\": {},\n  \"meshes\": {},\n"
+        "  \"materials\": {},\n  \"textures\": {}\n}}\n",
+        mesh_format::kVersion, file_bytes, document.vertices.size(), document.indices.size_bytes(),
+        document.texels.size(), counts.vertices, counts.triangles, scene.bounds_min[0],
+        scene.bounds_min[1], scene.bounds_min[2], scene.bounds_max[0], scene.bounds_max[1],
+        scene.bounds_max[2], scene.radius, scene.position_error, scene.frame_error_mean,
+        scene.frame_error_max, scene.uv_error, meshes, materials, textures);
+}
+
+}  // namespace bake

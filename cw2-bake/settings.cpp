@@ -1,0 +1,82 @@
+#include "cw2-bake/settings.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <map>
+#include <string>
+
+namespace bake {
+
+namespace {
+
+/// Adds an option whose value is one of `names`.
+template <typename T>
+void add_choice(CLI::App& app, const std::string& name, T& target,
+                const std::map<std::string, T>& names, const std::string& description) {
+    std::string form;
+    for (const auto& entry : names) form += (form.empty() ? "" : "|") + entry.first;
+    app.add_option_function<std::string>(
+           name,
+           [&target, names, name, form](const std::string& text) {
+               const auto found = names.find(text);
+               if (found == names.end()) {
+                   throw CLI::ValidationError(name + ": '" + text + "' is none of " + form);
+               }
+               target = found->second;
+           },
+           description)
+        ->type_name(form);
+}
+
+}  // namespace
+
+std::optional<Settings> parse_settings(int argc, const char* const* argv) {
+    using mesh_format::FrameForm;
+    using mesh_format::PositionForm;
+    Settings settings;
+    CLI::App app("Turns a Wavefront OBJ with its materials and textures into one file for cw2.",
+                 "cw2-bake");
+    app.set_version_flag("--version", "cw2-bake " CW2_VERSION);
+    app.add_option("INPUT", settings.input, "scene to bake, or with --inspect a baked file")
+        ->required()
+        ->type_name("FILE");
+    app.add_option("-o,--output", settings.output, "file to write [INPUT as .cw2mesh]")
+        ->type_name("FILE.cw2mesh");
+    add_choice<bool>(app, "--up", settings.z_up, {{"y", false}, {"z", true}},
+                     "the input's up axis [y]");
+    add_choice<FrameForm>(app, "--tangent-frame", settings.frame_form,
+                          {{"quat48", FrameForm::quat48},
+                           {"quat32", FrameForm::quat32},
+                           {"half3", FrameForm::half3},
+                           {"f32", FrameForm::f32}},
+                          "how a vertex holds its tangent frame [quat48]");
+    add_choice<PositionForm>(
+        app, "--positions", settings.position_form,
+        {{"quantised", PositionForm::quantised}, {"f32", PositionForm::f32}},
+        "how a vertex holds its position; f32 keeps UVs as floats, too [quantised]");
+    add_choice<TextureMode>(app, "--textures", settings.textures,
+                            {{"lossless", TextureMode::lossless}, {"none", TextureMode::none}},
+                            "how textures are stored [lossless]");
+    app.add_option("--threads", settings.threads, "threads to use [one a processor]")
+        ->check(CLI::Range(1, 1024))
+        ->type_name("N");
+    app.add_flag("--strict", settings.strict, "a warning is an error");
+    app.add_flag("--quiet", settings.quiet, "print errors only");
+    app.add_flag("--inspect", settings.inspect, "print what is in a baked file");
+    app.add_flag("--json", settings.json, "with --inspect: print JSON");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        app.exit(success, std::cout, std::cerr);
+        return std::nullopt;
+    } catch (const CLI::ParseError& error) {
+        throw UsageError(error.what());
+    }
+    if (settings.json && !settings.inspect) throw UsageError("--json needs --inspect");
+    if (settings.output.empty()) {
+        settings.output = std::filesystem::path(settings.input).replace_extension("cw2mesh");
+    }
+    return settings;
+}
+
+}  // namespace bake

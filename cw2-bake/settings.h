@@ -1,0 +1,39 @@
+// The command line of cw2-bake.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+
+#include "mesh-format/layout.h"
+
+namespace bake {
+
+enum class TextureMode {
+    lossless,  ///< 8 bits a channel
+    none,      ///< materials keep their factors only
+};
+
+struct Settings {
+    std::filesystem::path input;
+    std::filesystem::path output;  ///< [the input with the extension .cw2mesh]
+    bool z_up = false;             ///< the input's up axis is +Z
+    mesh_format::FrameForm frame_form = mesh_format::FrameForm::quat48;
+    mesh_format::PositionForm position_form = mesh_format::PositionForm::quantised;
+    TextureMode textures = TextureMode::lossless;
+    int threads = 0;       ///< 0: one a processor
+    bool strict = false;   ///< a warning is an error
+    bool quiet = false;    ///< print errors only
+    bool inspect = false;  ///< print what is in the input, a .cw2mesh file
+    bool json = false;     ///< with inspect: for machines
+};
+
+/// A command line that does not make sense; what() is one line.
+class UsageError : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Reads the command line. `--help` and `--version` print and give nothing. Throws UsageError.
+std::optional<Settings> parse_settings(int argc, const char* const* argv);
+
+}  // namespace bake
