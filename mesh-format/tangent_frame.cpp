@@ -222,6 +222,9 @@ float float_of_half(std::uint16_t half) {
 /// nearest. Rounding each component may leave the code inside the unit sphere, and the decoder
 /// would make up the missing length with a w of up to 0.03.
 Words nearest_half_turn(const std::array<double, 3>& v) {
+    // A code that is longer by less than this lies among the eight around its own direction, so
+    // packing what it decodes to finds it again.
+    constexpr double kLongest = 1 + 0x1p-11;
     Words below{};
     for (int i = 0; i < 3; ++i) {
         below[i] = half_of(v[i]);
@@ -231,18 +234,18 @@ Words nearest_half_turn(const std::array<double, 3>& v) {
     double best_distance = 8;
     for (unsigned corner = 0; corner < 8; ++corner) {
         Words code = below;
-        double c[3];
+        float c[3];
         for (unsigned i = 0; i < 3; ++i) {
             if (corner >> i & 1 && float_of_half(below[i]) < v[i]) ++code[i];
             c[i] = float_of_half(code[i]);
         }
-        const double squared = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-        const double length = std::sqrt(std::max(1.0, squared));
-        double distance = std::max(0.0, 1 - squared);  // the decoder's w, squared
+        const float squared = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+        const double length = std::sqrt(std::max(1.0, double{squared}));
+        double distance = std::max(0.0f, 1 - squared);  // the decoder's w, squared
         for (int i = 0; i < 3; ++i) {
             distance += (c[i] / length - v[i]) * (c[i] / length - v[i]);
         }
-        if (distance < best_distance) {
+        if (length < kLongest && distance < best_distance) {
             best_distance = distance;
             best = code;
         }
@@ -251,26 +254,33 @@ Words nearest_half_turn(const std::array<double, 3>& v) {
 }
 
 Words pack_half3(const Rotation& rotation, bool left_handed) {
-    constexpr double kExact = 1e-6;  // closer than this to a half or quarter turn is one
-    const auto& [x, y, z, w] = rotation.q;
-    const double sign = w < 0 ? -1 : 1;
-    const double norm = std::sqrt(x * x + y * y + z * z + w * w);
-    const std::array<double, 3> v{std::abs(x) / norm, std::abs(y) / norm, std::abs(z) / norm};
+    constexpr double kExact = 1e-6;  // what the rounding of the input's floats may amount to
+    const auto& q = rotation.q;
+    const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const std::array<double, 3> v{std::abs(q[0]) / norm, std::abs(q[1]) / norm,
+                                  std::abs(q[2]) / norm};
+    int ones = 0;
+    bool whole = true;
+    for (const double component : q) {
+        const double nearest = std::round(std::abs(component));
+        ones += nearest == 1;
+        whole = whole && std::abs(std::abs(component) - nearest) < kExact;
+    }
 
     Words words{};
-    const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});
-    const double sum = std::abs(x) + std::abs(y) + std::abs(z);
-    if (std::abs(w) >= 1 - kExact && largest >= 1 - kExact && sum <= 1 + kExact) {
-        // Quarter turn about an axis: it needs sqrt(1/2), which no half is.
-        for (int i = 0; i < 3; ++i) words[i] = half_of(std::round(std::abs(rotation.q[i])));
-        words[1] |= kSpareBit;
-    } else if (std::abs(w) < kExact * norm) {
+    if (whole && ones == 2) {
+        // A quarter turn about an axis or a half turn between two needs sqrt(1/2), which no half
+        // is. Components of 1 say the same; they are too long to leave a w by themselves.
+        for (int i = 0; i < 3; ++i) words[i] = half_of(std::round(std::abs(q[i])));
+        if (std::abs(q[3]) > 0.5) words[1] |= kSpareBit;
+    } else if (std::abs(q[3]) < kExact * norm) {
         words = nearest_half_turn(v);
     } else {
         for (int i = 0; i < 3; ++i) words[i] = half_of(v[i]);
     }
+    const double sign = q[3] < 0 ? -1 : 1;
     for (int i = 0; i < 3; ++i) {
-        if (rotation.q[i] * sign < 0) words[i] |= 0x8000;
+        if (q[i] * sign < 0) words[i] |= 0x8000;
     }
     if (left_handed) words[0] |= kSpareBit;
     return words;
