@@ -262,11 +262,9 @@ Instance::Instance(bool validation, const std::vector<const char*>& extensions) 
 
     const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
         vkGetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
-    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
-        vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
     VkDebugUtilsMessengerEXT handle = VK_NULL_HANDLE;
     check(create(instance, &messenger, nullptr, &handle), "vkCreateDebugUtilsMessengerEXT");
-    messenger_ = DebugMessenger(instance, handle, destroy);
+    messenger_ = DebugMessenger(instance, handle, messenger_destroyer(instance));
 }
 
 std::vector<std::string> describe_devices(const Instance& instance) {

@@ -106,6 +106,12 @@ class InstanceChild {
 using DebugMessenger = InstanceChild<VkDebugUtilsMessengerEXT>;
 using SurfaceHandle = InstanceChild<VkSurfaceKHR>;
 
+/// The function pointer that destroys a DebugMessenger of `instance`.
+inline DebugMessenger::Destroy messenger_destroyer(VkInstance instance) {
+    return reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
+}
+
 /// The function pointer that destroys a SurfaceHandle.
 inline constexpr SurfaceHandle::Destroy kDestroySurface = vkDestroySurfaceKHR;
 
