@@ -1,0 +1,47 @@
+// Triangles as MikkTSpace takes them, every corner with attributes of its own, and as ours does.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <string>
+#include <vector>
+
+namespace oracle {
+
+struct CornerMesh {
+    std::string name;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec2> uvs;
+};
+
+struct IndexedMesh {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec3> normals;
+    std::vector<glm::vec2> uvs;
+    std::vector<std::uint32_t> indices;
+};
+
+/// Corners that are equal in every attribute become one vertex.
+IndexedMesh weld(const CornerMesh& mesh);
+
+/// The same triangles in the same order over vertices in another order.
+IndexedMesh renumber(const IndexedMesh& mesh, std::uint32_t seed);
+
+/// Our tangents of the welded mesh, one a corner.
+std::vector<glm::vec4> our_tangents(const IndexedMesh& mesh);
+
+/// The meshes that are small enough to have recorded results, about 15,000 corners in all.
+std::vector<CornerMesh> small_meshes();
+
+/// The meshes for the living oracle only, about 550,000 corners in all.
+std::vector<CornerMesh> large_meshes();
+
+/// One mesh a material of an OBJ that holds v, vt, vn, usemtl and triangles v/vt/vn only; throws
+/// std::runtime_error for anything else.
+std::vector<CornerMesh> read_obj_by_material(const std::filesystem::path& path);
+
+}  // namespace oracle

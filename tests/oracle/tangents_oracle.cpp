@@ -1,0 +1,219 @@
+// tangents_oracle compare|record RECORDED WORK_DIR OBJ [NODE SCRIPT PACKAGE_DIR]
+//
+// Compares bake::generate_tangents, corner by corner, with the npm package `mikktspace`: with the
+// package itself where PACKAGE_DIR holds it, else with the results for the small meshes that
+// `record` once wrote to the file RECORDED. Exits 1 if they differ.
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <stdexcept>
+
+#include "tests/oracle/corner_mesh.h"
+
+namespace {
+
+using oracle::CornerMesh;
+using Tangents = std::vector<glm::vec4>;
+
+struct Arguments {
+    std::string mode;
+    std::filesystem::path recorded;
+    std::filesystem::path work_dir;
+    std::filesystem::path obj;
+    std::string node;
+    std::string script;
+    std::filesystem::path package_dir;
+};
+
+template <typename T>
+void write(std::ofstream& file, const std::vector<T>& values) {
+    file.write(reinterpret_cast<const char*>(values.data()),
+               static_cast<std::streamsize>(values.size() * sizeof(T)));
+}
+
+template <typename T>
+void read(std::ifstream& file, T* values, std::size_t count) {
+    if (!file.read(reinterpret_cast<char*>(values),
+                   static_cast<std::streamsize>(count * sizeof(T))))
+        throw std::runtime_error("the oracle's results end too early");
+}
+
+std::vector<Tangents> run_package(const Arguments& arguments,
+                                  const std::vector<CornerMesh>& meshes) {
+    const std::filesystem::path input = arguments.work_dir / "oracle_meshes.bin";
+    const std::filesystem::path output = arguments.work_dir / "oracle_tangents.bin";
+    std::ofstream file(input, std::ios::binary);
+    for (const CornerMesh& mesh : meshes) {
+        write(file, std::vector{static_cast<std::uint32_t>(mesh.positions.size())});
+        write(file, mesh.positions);
+        write(file, mesh.normals);
+        write(file, mesh.uvs);
+    }
+    file.close();
+    const std::string command = '"' + arguments.node + "\" \"" + arguments.script + "\" \"" +
+                                arguments.package_dir.string() + "\" \"" + input.string() +
+                                "\" \"" + output.string() + "\" > \"" +
+                                (arguments.work_dir / "oracle_times.txt").string() + '"';
+    if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
+    std::ifstream results(output, std::ios::binary);
+    std::vector<Tangents> tangents;
+    for (const CornerMesh& mesh : meshes) {
+        tangents.emplace_back(mesh.positions.size());
+        read(results, tangents.back().data(), tangents.back().size());
+    }
+    return tangents;
+}
+
+/// FNV-1a over the bits of the mesh, so that a recorded result is never held against another mesh.
+std::uint64_t fingerprint(const CornerMesh& mesh) {
+    std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
+    const auto mix = [&](const auto& values) {
+        const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+        for (std::size_t i = 0; i < values.size() * sizeof(values[0]); ++i)
+            hash = (hash ^ bytes[i]) * 0x100'0000'01B3;
+    };
+    mix(mesh.positions);
+    mix(mesh.normals);
+    mix(mesh.uvs);
+    return hash;
+}
+
+void record(const Arguments& arguments) {
+    const std::vector<CornerMesh> meshes = oracle::small_meshes();
+    const std::vector<Tangents> tangents = run_package(arguments, meshes);
+    std::ofstream file(arguments.recorded, std::ios::binary);
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        write(file, std::vector{fingerprint(meshes[i])});
+        write(file, tangents[i]);
+    }
+    if (!file.flush()) throw std::runtime_error("cannot write " + arguments.recorded.string());
+}
+
+std::vector<Tangents> read_recorded(const Arguments& arguments,
+                                    const std::vector<CornerMesh>& meshes) {
+    std::ifstream file(arguments.recorded, std::ios::binary);
+    std::vector<Tangents> tangents;
+    for (const CornerMesh& mesh : meshes) {
+        std::uint64_t recorded_fingerprint = 0;
+        read(file, &recorded_fingerprint, 1);
+        if (recorded_fingerprint != fingerprint(mesh))
+            throw std::runtime_error("the mesh '" + mesh.name +
+                                     "' is not the recorded one: run tests/oracle/record.sh");
+        tangents.emplace_back(mesh.positions.size());
+        read(file, tangents.back().data(), tangents.back().size());
+    }
+    return tangents;
+}
+
+double degrees_between(const glm::vec3& a, const glm::vec3& b) {
+    return std::atan2(glm::length(glm::cross(glm::dvec3(a), glm::dvec3(b))),
+                      glm::dot(glm::dvec3(a), glm::dvec3(b))) *
+           57.295779513082321;
+}
+
+bool same_bits(const Tangents& a, const Tangents& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+}
+
+/// What holds with no oracle. Returns the number of properties that fail.
+int check_properties(const oracle::IndexedMesh& mesh, const Tangents& ours) {
+    int failures = 0;
+    const auto expect = [&](bool holds, const char* property) {
+        if (!holds) std::printf("    FAILED: %s\n", property);
+        failures += holds ? 0 : 1;
+    };
+    expect(std::ranges::all_of(ours,
+                               [](const glm::vec4& t) {
+                                   return std::abs(glm::length(glm::vec3(t)) - 1.0f) < 1e-5f &&
+                                          std::abs(t.w) == 1.0f;
+                               }),
+           "unit length, sign +1 or -1");
+    expect(same_bits(ours, oracle::our_tangents(oracle::renumber(mesh, 99))),
+           "the same bits over vertices in another order");
+    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+    expect(same_bits(ours, oracle::our_tangents(mesh)), "the same bits on one thread");
+    return failures;
+}
+
+/// Returns the number of failures, having printed a line about the mesh.
+int compare(const CornerMesh& mesh, const Tangents& theirs) {
+    const oracle::IndexedMesh welded = oracle::weld(mesh);
+    const Tangents ours = oracle::our_tangents(welded);
+    std::size_t equal = 0;
+    std::size_t far = 0;
+    std::size_t wrong_sign = 0;
+    std::size_t without_direction = 0;
+    double worst = 0.0;
+    for (std::size_t c = 0; c < ours.size(); ++c) {
+        equal += std::memcmp(&ours[c], &theirs[c], sizeof ours[c]) == 0;
+        wrong_sign += ours[c].w != theirs[c].w;
+        if (!(glm::length(glm::vec3(theirs[c])) > 0.5f)) {
+            ++without_direction;
+            continue;
+        }
+        const double angle = degrees_between(glm::vec3(ours[c]), glm::vec3(theirs[c]));
+        far += !(angle <= 0.1);
+        worst = std::max(worst, angle);
+    }
+    std::printf(
+        "%-34s %7zu  equal bits %7.3f %%  worst %.5f deg  beyond 0.1 deg %zu  wrong sign "
+        "%zu  (oracle without direction %zu)\n",
+        mesh.name.c_str(), ours.size(), 100.0 * double(equal) / double(ours.size()), worst, far,
+        wrong_sign, without_direction);
+    int failures = check_properties(welded, ours);
+    if (static_cast<double>(far) > 1e-4 * static_cast<double>(ours.size()) || wrong_sign != 0) {
+        std::printf("    FAILED: the oracle's tangents\n");
+        ++failures;
+    }
+    return failures;
+}
+
+int compare_all(const Arguments& arguments) {
+    std::vector<CornerMesh> meshes = oracle::small_meshes();
+    std::vector<Tangents> tangents;
+    if (std::filesystem::exists(arguments.package_dir / "node_modules" / "mikktspace")) {
+        std::printf("oracle: the npm package mikktspace, live\n");
+        std::ranges::move(oracle::large_meshes(), std::back_inserter(meshes));
+        if (std::filesystem::exists(arguments.obj))
+            std::ranges::move(oracle::read_obj_by_material(arguments.obj),
+                              std::back_inserter(meshes));
+        else
+            std::printf("skipped: no %s\n", arguments.obj.c_str());
+        tangents = run_package(arguments, meshes);
+    } else {
+        std::printf("oracle: the results recorded in %s\n", arguments.recorded.c_str());
+        tangents = read_recorded(arguments, meshes);
+    }
+    int failures = 0;
+    for (std::size_t i = 0; i < meshes.size(); ++i) failures += compare(meshes[i], tangents[i]);
+    std::printf("%zu meshes, %d failures\n", meshes.size(), failures);
+    return failures == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+    try {
+        if (count != 5 && count != 8) throw std::runtime_error("wrong arguments");
+        Arguments arguments{values[1], values[2], values[3], values[4], {}, {}, {}};
+        if (count == 8) {
+            arguments.node = values[5];
+            arguments.script = values[6];
+            arguments.package_dir = values[7];
+        }
+        if (arguments.mode == "compare") return compare_all(arguments);
+        if (arguments.mode != "record") throw std::runtime_error("wrong arguments");
+        record(arguments);
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "tangents_oracle: %s\n", error.what());
+        return 1;
+    }
+}
