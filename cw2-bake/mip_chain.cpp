@@ -149,10 +149,11 @@ void encode_unorm8(std::span<const float> texels, std::byte* out) {
 }
 
 void encode_srgb8(std::span<const float> texels, std::byte* out) {
+    const SrgbTables& tables = srgb();
     for (std::size_t i = 0; i + 2 < texels.size(); i += 3, out += 4) {
-        out[0] = static_cast<std::byte>(linear_to_srgb8(texels[i]));
-        out[1] = static_cast<std::byte>(linear_to_srgb8(texels[i + 1]));
-        out[2] = static_cast<std::byte>(linear_to_srgb8(texels[i + 2]));
+        out[0] = static_cast<std::byte>(tables.to_srgb8(texels[i]));
+        out[1] = static_cast<std::byte>(tables.to_srgb8(texels[i + 1]));
+        out[2] = static_cast<std::byte>(tables.to_srgb8(texels[i + 2]));
         out[3] = std::byte{255};
     }
 }

@@ -15,7 +15,8 @@ namespace {
 ImageReader* load_image_reader() {
     const std::filesystem::path module =
         std::filesystem::read_symlink("/proc/self/exe").parent_path() / kImageReaderModule;
-    void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
+    // Lazy: binding every function of 250 libraries takes longer than decoding an image.
+    void* handle = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
     void* symbol = handle ? dlsym(handle, kImageReaderSymbol) : nullptr;
     if (!symbol) {
         throw ImageError(std::string("no image can be read: ") + dlerror());

@@ -25,13 +25,13 @@ float to_float(float value) {
     return std::isfinite(value) ? std::clamp(value, -kLargest, kLargest) : 0.0f;
 }
 
-float to_linear(std::uint8_t value) {
-    return srgb8_to_linear(value);
+float to_linear(const SrgbTables& tables, std::uint8_t value) {
+    return tables.to_linear(value);
 }
-float to_linear(std::uint16_t value) {
-    return srgb16_to_linear(value);
+float to_linear(const SrgbTables& tables, std::uint16_t value) {
+    return tables.to_linear(value);
 }
-float to_linear(float value) {
+float to_linear(const SrgbTables&, float value) {
     return std::clamp(to_float(value), 0.0f, 1.0f);
 }
 
@@ -128,13 +128,14 @@ TexelSource scalar_texels(const Image& image, Channel channel) {
 }
 
 TexelSource color_texels(const Image& image) {
-    return {image.width, image.height, 3, [&image](std::uint32_t y, std::span<float> texels) {
+    return {image.width, image.height, 3,
+            [&image, &tables = srgb()](std::uint32_t y, std::span<float> texels) {
                 const auto [r, g, b] = color_channels(image);
                 with_row(image, y, [&](const auto* row) {
                     for (std::size_t i = 0; i < texels.size(); i += 3, row += image.channels) {
-                        texels[i] = to_linear(row[r]);
-                        texels[i + 1] = to_linear(row[g]);
-                        texels[i + 2] = to_linear(row[b]);
+                        texels[i] = to_linear(tables, row[r]);
+                        texels[i + 1] = to_linear(tables, row[g]);
+                        texels[i + 2] = to_linear(tables, row[b]);
                     }
                 });
             }};

@@ -15,7 +15,6 @@
 #include <unordered_map>
 
 #include "cw2-bake/material_images.h"
-#include "mesh-format/file.h"
 
 namespace bake {
 namespace {
@@ -146,27 +145,34 @@ class Shelf {
         if (!texture) {
             return mesh_format::kNoTexture;
         }
-        const std::uint64_t hash = mesh_format::checksum(texture->payload);
-        const auto [begin, end] = known_.equal_range(hash);
+        const auto [begin, end] = known_.equal_range(digest(*texture));
         for (auto entry = begin; entry != end; ++entry) {
             if (equal(textures_[entry->second], *texture)) {
                 return entry->second;
             }
         }
         const auto index = static_cast<std::uint32_t>(textures_.size());
-        known_.emplace(hash, index);
+        known_.emplace(digest(*texture), index);
         textures_.push_back(std::move(*texture));
         return index;
     }
 
  private:
+    /// The smallest levels, which average over all the others.
+    static std::string_view digest(const Texture& texture) {
+        const std::string_view bytes(reinterpret_cast<const char*>(texture.payload.data()),
+                                     texture.payload.size());
+        return bytes.substr(bytes.size() - std::min<std::size_t>(bytes.size(), 256));
+    }
+
     static bool equal(const Texture& a, const Texture& b) {
         return std::tie(a.format, a.clamp, a.width, a.height, a.payload) ==
                std::tie(b.format, b.clamp, b.width, b.height, b.payload);
     }
 
     std::vector<Texture>& textures_;
-    std::unordered_multimap<std::uint64_t, std::uint32_t> known_;
+    std::unordered_multimap<std::string_view, std::uint32_t>
+        known_;  ///< digests point into textures_
 };
 
 /// One warning an image, in order of first use.

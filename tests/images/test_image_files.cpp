@@ -110,6 +110,8 @@ TEST(ImageFiles, SixteenBitsAreRounded) {
     ASSERT_TRUE(baked.warnings.empty());
     EXPECT_EQ(baked.set.textures[0].width, 1u) << "both round to 77";
     EXPECT_EQ(baked.byte(0, 0, 0), 77);
+    const Baked colors = bake_all({with_color(map_of(folder / "deep.png"))});
+    EXPECT_EQ(colors.byte(0, 0, 0), 77) << "16 bits are sRGB as 8 are";
 }
 
 TEST(ImageFiles, FloatsHoldLinearLight) {

@@ -169,13 +169,13 @@ TEST(MaskedColour, LevelsAreTheMeanOfWhatIsShown) {
                     for (std::size_t x = t % size << i; x < (t % size + 1) << i; ++x) {
                         if (is_shown(images.mask, y * 64 + x)) {
                             const auto byte = images.color.samples[3 * (y * 64 + x) + c];
-                            sum += bake::srgb8_to_linear(std::to_integer<std::uint8_t>(byte));
+                            sum += bake::srgb().to_linear(std::to_integer<std::uint8_t>(byte));
                             weight += 1.0;
                         }
                     }
                 }
                 if (weight > 0.0) {
-                    const int expected = bake::linear_to_srgb8(static_cast<float>(sum / weight));
+                    const int expected = bake::srgb().to_srgb8(static_cast<float>(sum / weight));
                     EXPECT_NEAR(std::to_integer<int>(payload[offset + 4 * t + c]), expected, 1);
                 }
             }

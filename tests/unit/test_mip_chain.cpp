@@ -101,19 +101,19 @@ double srgb_encode(double value) {
 
 TEST(Srgb, ReturnsEveryByteAndRoundsToTheNearest) {
     for (int i = 0; i < 256; ++i) {
-        const float linear = bake::srgb8_to_linear(static_cast<std::uint8_t>(i));
+        const float linear = bake::srgb().to_linear(static_cast<std::uint8_t>(i));
         EXPECT_NEAR(linear, srgb_decode(i / 255.0), 1e-7);
-        EXPECT_EQ(bake::linear_to_srgb8(linear), i);
+        EXPECT_EQ(bake::srgb().to_srgb8(linear), i);
     }
     for (int i = 0; i <= 100'000; ++i) {
         const float linear = static_cast<float>(i) / 100'000.0f;
         const double exact = srgb_encode(linear) * 255.0;
-        EXPECT_LE(std::abs(bake::linear_to_srgb8(linear) - exact), 0.5001) << linear;
+        EXPECT_LE(std::abs(bake::srgb().to_srgb8(linear) - exact), 0.5001) << linear;
     }
-    EXPECT_EQ(bake::linear_to_srgb8(-1.0f), 0);
-    EXPECT_EQ(bake::linear_to_srgb8(7.0f), 255);
+    EXPECT_EQ(bake::srgb().to_srgb8(-1.0f), 0);
+    EXPECT_EQ(bake::srgb().to_srgb8(7.0f), 255);
     for (int i = 0; i < 65'536; i += 17) {
-        EXPECT_NEAR(bake::srgb16_to_linear(static_cast<std::uint16_t>(i)),
+        EXPECT_NEAR(bake::srgb().to_linear(static_cast<std::uint16_t>(i)),
                     srgb_decode(i / 65'535.0), 1e-7);
     }
 }
