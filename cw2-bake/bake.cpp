@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "cw2-bake/chunks.h"
 #include "cw2-bake/framed_mesh.h"
 #include "cw2-bake/normals.h"
 #include "cw2-bake/progress.h"
@@ -27,13 +28,14 @@ using mesh_format::MaterialRecord;
 using mesh_format::StringRef;
 using mesh_format::TextureRecord;
 
-/// Welds, frames and cuts the scene's triangles; the meshes come in the order of their materials.
-std::vector<FramedMesh> make_meshes(const SourceScene& scene) {
+/// Welds the scene's triangles, gives them their frames, cuts them into chunks; the meshes come in
+/// the order of their materials.
+std::vector<ChunkedMesh> make_meshes(const SourceScene& scene) {
     const std::vector<WeldedMesh> welded = weld(scene);
-    std::vector<std::vector<FramedMesh>> pieces(welded.size());
+    std::vector<std::vector<ChunkedMesh>> pieces(welded.size());
     tbb::parallel_for(std::size_t{0}, welded.size(),
-                      [&](std::size_t i) { pieces[i] = partition(add_tangents(welded[i])); });
-    std::vector<FramedMesh> meshes;
+                      [&](std::size_t i) { pieces[i] = make_chunks(add_tangents(welded[i])); });
+    std::vector<ChunkedMesh> meshes;
     for (auto& part : pieces) std::move(part.begin(), part.end(), std::back_inserter(meshes));
     return meshes;
 }
@@ -139,7 +141,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
     SourceScene scene = read_obj(settings.input, warn);
     if (settings.z_up) turn_z_up(scene);
     generate_normals(scene);
-    const std::vector<FramedMesh> meshes = make_meshes(scene);
+    const std::vector<ChunkedMesh> meshes = make_meshes(scene);
     TextureSet textures = make_textures(settings, scene, warn);
     const PackedGeometry geometry =
         quantise(meshes, uv_budgets(textures), {settings.frame_form, settings.position_form});
@@ -147,6 +149,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
 
     const mesh_format::Document document{.scene = geometry.scene,
                                          .meshes = geometry.meshes,
+                                         .chunks = geometry.chunks,
                                          .materials = tables.materials,
                                          .textures = tables.textures,
                                          .strings = tables.strings,

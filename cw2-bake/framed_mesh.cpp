@@ -1,7 +1,6 @@
 #include "cw2-bake/framed_mesh.h"
 
 #include "cw2-bake/tangents.h"
-#include "mesh-format/layout.h"
 
 namespace bake {
 
@@ -39,37 +38,6 @@ FramedMesh add_tangents(const WeldedMesh& mesh) {
         }
     }
     return framed;
-}
-
-std::vector<FramedMesh> partition(FramedMesh mesh) {
-    std::vector<FramedMesh> pieces;
-    if (mesh.positions.size() <= mesh_format::kMaxMeshVertices) {
-        pieces.push_back(std::move(mesh));
-        return pieces;
-    }
-    std::vector<std::uint32_t> piece_index(mesh.positions.size(), kNone);
-    std::vector<std::uint32_t> piece_vertices;  // the mesh's vertices in the last piece
-    for (std::size_t at = 0; at < mesh.indices.size(); at += 3) {
-        if (pieces.empty() || piece_vertices.size() + 3 > mesh_format::kMaxMeshVertices) {
-            for (const std::uint32_t vertex : piece_vertices) piece_index[vertex] = kNone;
-            piece_vertices.clear();
-            pieces.emplace_back().material = mesh.material;
-        }
-        FramedMesh& piece = pieces.back();
-        for (std::size_t corner = at; corner < at + 3; ++corner) {
-            const std::uint32_t vertex = mesh.indices[corner];
-            if (piece_index[vertex] == kNone) {
-                piece_index[vertex] = static_cast<std::uint32_t>(piece_vertices.size());
-                piece_vertices.push_back(vertex);
-                piece.positions.push_back(mesh.positions[vertex]);
-                piece.normals.push_back(mesh.normals[vertex]);
-                piece.uvs.push_back(mesh.uvs[vertex]);
-                piece.tangents.push_back(mesh.tangents[vertex]);
-            }
-            piece.indices.push_back(piece_index[vertex]);
-        }
-    }
-    return pieces;
 }
 
 }  // namespace bake

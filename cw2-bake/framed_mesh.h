@@ -1,4 +1,4 @@
-// Vertices with their tangents, in pieces that 16-bit indices can address.
+// Vertices with their tangents.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,5 @@ struct FramedMesh {
 /// Gives `mesh` its tangents: vertices whose corners differ in them are split. Vertices come in
 /// the order of their first use.
 FramedMesh add_tangents(const WeldedMesh& mesh);
-
-/// Cuts `mesh` into meshes of at most mesh_format::kMaxMeshVertices vertices, triangles in order.
-std::vector<FramedMesh> partition(FramedMesh mesh);
 
 }  // namespace bake

@@ -1,5 +1,6 @@
 #include "cw2-bake/quantise.h"
 
+#include <meshoptimizer.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -212,12 +213,38 @@ class MeshPacker {
     MeshRecord& record_;
 };
 
+/// Fills in the mesh's part of the chunk section. `position_error` is how far a decoded position
+/// may lie from its source.
+void bound_chunks(const ChunkedMesh& chunked, double position_error,
+                  std::span<mesh_format::ChunkRecord> records) {
+    const FramedMesh& mesh = chunked.mesh;
+    for (std::size_t i = 0; i < chunked.chunks.size(); ++i) {
+        const Chunk& chunk = chunked.chunks[i];
+        const meshopt_Bounds bounds = meshopt_computeClusterBounds(
+            mesh.indices.data() + chunk.first_index, chunk.index_count, &mesh.positions.front().x,
+            mesh.positions.size(), sizeof(glm::vec3));
+        mesh_format::ChunkRecord& record = records[i];
+        record.first_index = chunk.first_index;
+        record.index_count = chunk.index_count;
+        for (int axis = 0; axis < 3; ++axis) {
+            record.center[axis] = bounds.center[axis];
+            record.cone_axis[axis] = bounds.cone_axis[axis];
+        }
+        record.radius = bounds.radius + static_cast<float>(position_error);
+        record.cone_cutoff = bounds.cone_cutoff;
+    }
+}
+
 /// Where the parts of each mesh lie in the sections.
-std::size_t lay_out(std::span<const FramedMesh> meshes, std::vector<MeshRecord>& records) {
+std::size_t lay_out(std::span<const ChunkedMesh> meshes, std::vector<MeshRecord>& records) {
     std::size_t vertex_bytes = 0;
     std::uint64_t index_count = 0;
+    std::uint32_t chunk_count = 0;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         MeshRecord& record = records[i];
+        record.first_chunk = chunk_count;
+        record.chunk_count = static_cast<std::uint32_t>(meshes[i].chunks.size());
+        chunk_count += record.chunk_count;
         record.vertex_offset = vertex_bytes;
         record.first_index = index_count;
         const auto stride =
@@ -230,7 +257,7 @@ std::size_t lay_out(std::span<const FramedMesh> meshes, std::vector<MeshRecord>&
 }
 
 /// Fills in what follows from all meshes together.
-void finish_scene(PackedGeometry& geometry, std::span<const FramedMesh> meshes,
+void finish_scene(PackedGeometry& geometry, std::span<const ChunkedMesh> meshes,
                   std::span<const Errors> errors) {
     Box box;
     for (const MeshRecord& record : geometry.meshes) {
@@ -242,11 +269,11 @@ void finish_scene(PackedGeometry& geometry, std::span<const FramedMesh> meshes,
     double vertices = 0.0;
     Errors all;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        for (const glm::vec3& position : meshes[i].positions) {
+        for (const glm::vec3& position : meshes[i].mesh.positions) {
             const glm::dvec3 arm = glm::dvec3(position) - center;
             square_radius = std::max(square_radius, glm::dot(arm, arm));
         }
-        vertices += static_cast<double>(meshes[i].positions.size());
+        vertices += static_cast<double>(meshes[i].mesh.positions.size());
         all.position = std::max(all.position, errors[i].position);
         all.frame_sum += errors[i].frame_sum;
         all.frame_max = std::max(all.frame_max, errors[i].frame_max);
@@ -266,13 +293,13 @@ void finish_scene(PackedGeometry& geometry, std::span<const FramedMesh> meshes,
 
 }  // namespace
 
-PackedGeometry quantise(std::span<const FramedMesh> meshes, std::span<const UvBudget> materials,
+PackedGeometry quantise(std::span<const ChunkedMesh> meshes, std::span<const UvBudget> materials,
                         const QuantiseSettings& settings) {
     PackedGeometry geometry;
     double step = 0.0;
     if (settings.position_form == PositionForm::quantised) {
         std::vector<Box> boxes;
-        for (const FramedMesh& mesh : meshes) boxes.push_back(box_of(mesh.positions));
+        for (const ChunkedMesh& chunked : meshes) boxes.push_back(box_of(chunked.mesh.positions));
         step = position_step(boxes);
     }
     geometry.scene.position_step = static_cast<float>(step);
@@ -281,24 +308,28 @@ PackedGeometry quantise(std::span<const FramedMesh> meshes, std::span<const UvBu
     geometry.meshes.resize(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         MeshRecord& record = geometry.meshes[i];
-        record.material = meshes[i].material;
+        record.material = meshes[i].mesh.material;
         record.position_form = settings.position_form;
         record.frame_form = settings.frame_form;
         record.uv_form =
             settings.position_form == PositionForm::f32 ? UvForm::f32 : UvForm::quantised;
-        record.vertex_count = static_cast<std::uint32_t>(meshes[i].positions.size());
-        record.index_count = static_cast<std::uint32_t>(meshes[i].indices.size());
-        packers.emplace_back(meshes[i], materials[meshes[i].material], step, record);
+        record.vertex_count = static_cast<std::uint32_t>(meshes[i].mesh.positions.size());
+        record.index_count = static_cast<std::uint32_t>(meshes[i].mesh.indices.size());
+        packers.emplace_back(meshes[i].mesh, materials[meshes[i].mesh.material], step, record);
     }
     geometry.vertices.resize(lay_out(meshes, geometry.meshes));
+    geometry.chunks.resize(geometry.meshes.back().first_chunk + geometry.meshes.back().chunk_count);
     geometry.indices.reserve(geometry.meshes.back().first_index +
                              geometry.meshes.back().index_count);
-    for (const FramedMesh& mesh : meshes) {
-        geometry.indices.insert(geometry.indices.end(), mesh.indices.begin(), mesh.indices.end());
+    for (const ChunkedMesh& chunked : meshes) {
+        geometry.indices.insert(geometry.indices.end(), chunked.mesh.indices.begin(),
+                                chunked.mesh.indices.end());
     }
     std::vector<Errors> errors(meshes.size());
     tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
         errors[i] = packers[i].pack(geometry.vertices.data() + geometry.meshes[i].vertex_offset);
+        bound_chunks(meshes[i], errors[i].position,
+                     std::span(geometry.chunks).subspan(geometry.meshes[i].first_chunk));
     });
     finish_scene(geometry, meshes, errors);
     return geometry;

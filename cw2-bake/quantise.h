@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "cw2-bake/framed_mesh.h"
+#include "cw2-bake/chunks.h"
 #include "mesh-format/layout.h"
 
 namespace bake {
@@ -26,6 +26,7 @@ struct UvBudget {
 struct PackedGeometry {
     mesh_format::SceneRecord scene{};
     std::vector<mesh_format::MeshRecord> meshes;  ///< as the input, in its order
+    std::vector<mesh_format::ChunkRecord> chunks;
     std::vector<std::byte> vertices;
     std::vector<std::uint16_t> indices;
 };
@@ -36,7 +37,7 @@ struct PackedGeometry {
 /// Positions go to one lattice of a power-of-two step, the finest on which every mesh spans at
 /// most 65,536 points and every coordinate stays below 2^24 steps from the origin. UVs go to a
 /// lattice for each mesh; where half its step exceeds 1/8 texel the mesh keeps float UVs.
-PackedGeometry quantise(std::span<const FramedMesh> meshes, std::span<const UvBudget> materials,
+PackedGeometry quantise(std::span<const ChunkedMesh> meshes, std::span<const UvBudget> materials,
                         const QuantiseSettings& settings);
 
 }  // namespace bake

@@ -110,12 +110,13 @@ std::string json_texture(std::uint32_t index) {
 void list_meshes(const Document& document, std::string& out) {
     for (std::size_t i = 0; i < document.meshes.size(); ++i) {
         const MeshRecord& mesh = document.meshes[i];
-        fmt::format_to(std::back_inserter(out),
-                       "mesh {}: {} vertices, {} triangles, material {}, position {}, frame {}, "
-                       "uv {}\n",
-                       i, grouped(mesh.vertex_count), grouped(mesh.index_count / 3), mesh.material,
-                       name_of(mesh.position_form), name_of(mesh.frame_form),
-                       name_of(mesh.uv_form));
+        fmt::format_to(
+            std::back_inserter(out),
+            "mesh {}: {} vertices, {} triangles in {} chunks, material {}, position {}, frame {}, "
+            "uv {}\n",
+            i, grouped(mesh.vertex_count), grouped(mesh.index_count / 3), mesh.chunk_count,
+            mesh.material, name_of(mesh.position_form), name_of(mesh.frame_form),
+            name_of(mesh.uv_form));
     }
 }
 
@@ -169,12 +170,13 @@ std::string summary(const Document& document, std::uint64_t file_bytes) {
     const std::uint64_t data_bytes =
         document.vertices.size() + document.indices.size_bytes() + document.texels.size();
     return fmt::format(
-        "  {} vertices, {} triangles, {} meshes, {} materials ({} alpha-masked), {} textures\n"
+        "  {} vertices, {} triangles, {} meshes of {} chunks, {} materials ({} alpha-masked), {} "
+        "textures\n"
         "  {} bytes: vertices {}, indices {}, texels {}, tables {}\n"
         "  largest errors: position {}; frame {:.4f} degrees (mean {:.4f}); UV {:.3f} texel\n",
         grouped(counts.vertices), grouped(counts.triangles), document.meshes.size(),
-        document.materials.size(), counts.masked_materials, document.textures.size(),
-        grouped(file_bytes), grouped(document.vertices.size()),
+        document.chunks.size(), document.materials.size(), counts.masked_materials,
+        document.textures.size(), grouped(file_bytes), grouped(document.vertices.size()),
         grouped(document.indices.size_bytes()), grouped(document.texels.size()),
         grouped(file_bytes - data_bytes), position_error(document, counts),
         document.scene.frame_error_max, document.scene.frame_error_mean, document.scene.uv_error);
@@ -197,10 +199,11 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
     const auto& scene = document.scene;
     const std::string meshes = json_array(document.meshes, [](const MeshRecord& mesh) {
         return fmt::format(
-            "{{\"vertices\": {}, \"triangles\": {}, \"material\": {}, \"position\": \"{}\", "
+            "{{\"vertices\": {}, \"triangles\": {}, \"chunks\": {}, \"material\": {}, "
+            "\"position\": \"{}\", "
             "\"frame\": \"{}\", \"uv\": \"{}\"}}",
-            mesh.vertex_count, mesh.index_count / 3, mesh.material, name_of(mesh.position_form),
-            name_of(mesh.frame_form), name_of(mesh.uv_form));
+            mesh.vertex_count, mesh.index_count / 3, mesh.chunk_count, mesh.material,
+            name_of(mesh.position_form), name_of(mesh.frame_form), name_of(mesh.uv_form));
     });
     const std::string materials =
         json_array(document.materials, [&](const MaterialRecord& material) {

@@ -4,6 +4,8 @@
 
 #include <cstring>
 
+#include "cw2/visibility.h"
+
 namespace cw2 {
 
 namespace {
@@ -44,6 +46,21 @@ QueryPool make_timestamps(const Device& device, std::uint32_t count) {
     VkQueryPool pool = VK_NULL_HANDLE;
     check(vkCreateQueryPool(device.get(), &info, nullptr, &pool), "vkCreateQueryPool");
     return {device.get(), pool};
+}
+
+interop::SceneUniforms scene_uniforms(const Scene& scene, VkExtent2D extent,
+                                      const FrameSettings& settings) {
+    const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
+    interop::SceneUniforms uniforms{};
+    uniforms.camera = view_from_world(settings.camera);
+    uniforms.projection =
+        clip_from_view(settings.camera.vertical_fov, aspect, near_distance(scene.bounds()));
+    uniforms.projCam = uniforms.projection * uniforms.camera;
+    uniforms.cameraPosition = settings.camera.position;
+    uniforms.lightPosition = settings.light.position;
+    uniforms.lightColor = settings.light.color;
+    uniforms.ambientColor = settings.light.ambient;
+    return uniforms;
 }
 
 }  // namespace
@@ -117,21 +134,6 @@ void Renderer::resize(VkExtent2D extent) {
     extent_ = extent;
 }
 
-void Renderer::write_uniforms(const Slot& slot, const Scene& scene, VkExtent2D extent,
-                              const FrameSettings& settings) const {
-    const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
-    interop::SceneUniforms uniforms{};
-    uniforms.camera = view_from_world(settings.camera);
-    uniforms.projection =
-        clip_from_view(settings.camera.vertical_fov, aspect, near_distance(scene.bounds()));
-    uniforms.projCam = uniforms.projection * uniforms.camera;
-    uniforms.cameraPosition = settings.camera.position;
-    uniforms.lightPosition = settings.light.position;
-    uniforms.lightColor = settings.light.color;
-    uniforms.ambientColor = settings.light.ambient;
-    std::memcpy(slot.uniforms.mapped.data(), &uniforms, sizeof uniforms);
-}
-
 void Renderer::begin_attachments(VkCommandBuffer commands, const FrameTarget& target,
                                  const FrameSettings& settings) const {
     const bool multisample = formats_.samples != VK_SAMPLE_COUNT_1_BIT;
@@ -181,37 +183,44 @@ void Renderer::begin_attachments(VkCommandBuffer commands, const FrameTarget& ta
     vkCmdSetScissor(commands, 0, 1, &scissor);
 }
 
-void Renderer::draw(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
-                    const FrameSettings& settings) {
+void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
+                            const FrameSettings& settings) {
     VkPipeline bound_pipeline = VK_NULL_HANDLE;
     VkPipelineLayout bound_layout = VK_NULL_HANDLE;
     VkDescriptorSet bound_material = VK_NULL_HANDLE;
-    for (const Draw& draw : scene.draws()) {
-        const VkPipeline pipeline = pipelines_.get(
-            {draw.shading, draw.forms, settings.view, settings.normal_map, settings.alpha_mask});
-        const VkPipelineLayout layout = layouts_.pipeline(draw.shading);
-        if (pipeline != bound_pipeline) {
-            vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-            bound_pipeline = pipeline;
+    const Draw* bound_draw = nullptr;
+    for (const std::uint32_t index : visible_) {
+        const SceneChunk& chunk = scene.chunks()[index];
+        const Draw& draw = scene.draws()[chunk.draw];
+        if (&draw != bound_draw) {
+            const VkPipeline pipeline = pipelines_.get({draw.shading, draw.forms, settings.view,
+                                                        settings.normal_map, settings.alpha_mask});
+            const VkPipelineLayout layout = layouts_.pipeline(draw.shading);
+            if (pipeline != bound_pipeline) {
+                vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+                bound_pipeline = pipeline;
+            }
+            if (layout != bound_layout) {
+                vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
+                                        interop::kSceneSet, 1, &scene_set, 0, nullptr);
+                bound_layout = layout;
+            }
+            if (draw.material != bound_material) {
+                vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
+                                        interop::kMaterialSet, 1, &draw.material, 0, nullptr);
+                bound_material = draw.material;
+            }
+            vkCmdPushConstants(commands, layout,
+                               VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                               sizeof draw.constants, &draw.constants);
+            vkCmdSetCullMode(commands, draw.cull_back ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE);
+            const VkBuffer vertices = scene.vertices();
+            vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &draw.vertex_offset);
+            vkCmdBindIndexBuffer(commands, scene.indices(), draw.index_offset,
+                                 VK_INDEX_TYPE_UINT16);
+            bound_draw = &draw;
         }
-        if (layout != bound_layout) {
-            vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
-                                    interop::kSceneSet, 1, &scene_set, 0, nullptr);
-            bound_layout = layout;
-        }
-        if (draw.material != bound_material) {
-            vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout,
-                                    interop::kMaterialSet, 1, &draw.material, 0, nullptr);
-            bound_material = draw.material;
-        }
-        vkCmdPushConstants(commands, layout,
-                           VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                           sizeof draw.constants, &draw.constants);
-        vkCmdSetCullMode(commands, draw.cull_back ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE);
-        const VkBuffer vertices = scene.vertices();
-        vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &draw.vertex_offset);
-        vkCmdBindIndexBuffer(commands, scene.indices(), draw.index_offset, VK_INDEX_TYPE_UINT16);
-        vkCmdDrawIndexed(commands, draw.index_count, 1, 0, 0, 0);
+        vkCmdDrawIndexed(commands, chunk.index_count, 1, chunk.first_index, 0, 0);
     }
 }
 
@@ -223,11 +232,13 @@ void Renderer::write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 s
 void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
                       const FrameTarget& target, const FrameSettings& settings) {
     resize(target.extent);
-    write_uniforms(slots_[slot], scene, target.extent, settings);
+    const interop::SceneUniforms uniforms = scene_uniforms(scene, target.extent, settings);
+    std::memcpy(slots_[slot].uniforms.mapped.data(), &uniforms, sizeof uniforms);
+    find_visible(scene, uniforms.projCam, settings.camera.position, visible_);
     if (timestamps_) vkCmdResetQueryPool(commands, timestamps_.get(), 2 * slot, 2);
     write_timestamp(commands, VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, 2 * slot);
     begin_attachments(commands, target, settings);
-    draw(commands, slots_[slot].set, scene, settings);
+    draw_visible(commands, slots_[slot].set, scene, settings);
     vkCmdEndRendering(commands);
     write_timestamp(commands, VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 2 * slot + 1);
     // Resolving, too, is a colour attachment write.

@@ -64,12 +64,10 @@ class Renderer {
 
     void make_slots(std::uint32_t count);
     void resize(VkExtent2D extent);
-    void write_uniforms(const Slot& slot, const Scene& scene, VkExtent2D extent,
-                        const FrameSettings& settings) const;
     void begin_attachments(VkCommandBuffer commands, const FrameTarget& target,
                            const FrameSettings& settings) const;
-    void draw(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
-              const FrameSettings& settings);
+    void draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
+                      const FrameSettings& settings);
     void write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 stage,
                          std::uint32_t query) const;
 
@@ -79,7 +77,8 @@ class Renderer {
     Pipelines pipelines_;
     DescriptorPool descriptor_pool_;
     std::vector<Slot> slots_;
-    QueryPool timestamps_;  ///< two a slot; empty where the device has none
+    QueryPool timestamps_;                ///< two a slot; empty where the device has none
+    std::vector<std::uint32_t> visible_;  ///< chunks of the frame at hand
     VkExtent2D extent_{};
     Image depth_;
     Image multisampled_;  ///< empty with one sample a pixel

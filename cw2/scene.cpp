@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
-#include <numeric>
 
 namespace cw2 {
 
@@ -141,26 +140,24 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
     uploader.finish();
 
     const std::vector<VkDescriptorSet> sets = make_material_sets(device, layouts, document);
-    std::vector<std::size_t> order(document.meshes.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        const auto rank = [&](std::size_t mesh) {
-            const std::uint32_t material = document.meshes[mesh].material;
-            return std::pair(shading_of(document.materials[material]), material);
-        };
-        return rank(a) < rank(b);
-    });
-    for (const std::size_t i : order) {
-        const MeshRecord& mesh = document.meshes[i];
+    for (const MeshRecord& mesh : document.meshes) {
         const MaterialRecord& material = document.materials[mesh.material];
+        for (const auto& chunk : document.chunks.subspan(mesh.first_chunk, mesh.chunk_count)) {
+            chunks_.push_back({.center = glm::make_vec3(chunk.center),
+                               .radius = chunk.radius,
+                               .cone_axis = glm::make_vec3(chunk.cone_axis),
+                               .cone_cutoff = chunk.cone_cutoff,
+                               .draw = static_cast<std::uint32_t>(draws_.size()),
+                               .first_index = chunk.first_index,
+                               .index_count = chunk.index_count});
+        }
         draws_.push_back({.constants = constants_of(mesh, material, document.scene.position_step),
                           .forms = {mesh.position_form, mesh.frame_form, mesh.uv_form},
                           .shading = shading_of(material),
                           .cull_back = (material.flags & mesh_format::kCullBack) != 0,
                           .material = sets[mesh.material],
                           .vertex_offset = mesh.vertex_offset,
-                          .index_offset = mesh.first_index * sizeof(std::uint16_t),
-                          .index_count = mesh.index_count});
+                          .index_offset = mesh.first_index * sizeof(std::uint16_t)});
     }
 }
 
@@ -251,7 +248,7 @@ void Scene::write_material_set(const Device& device, VkDescriptorSet set,
 
 std::uint64_t Scene::triangle_count() const {
     std::uint64_t count = 0;
-    for (const Draw& draw : draws_) count += draw.index_count / 3;
+    for (const SceneChunk& chunk : chunks_) count += chunk.index_count / 3;
     return count;
 }
 

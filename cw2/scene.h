@@ -17,7 +17,7 @@
 
 namespace cw2 {
 
-/// One indexed draw: a mesh with its material.
+/// What the triangles of one mesh are drawn with.
 struct Draw {
     interop::DrawConstants constants;
     VertexForms forms;
@@ -26,6 +26,16 @@ struct Draw {
     VkDescriptorSet material;
     VkDeviceSize vertex_offset;  ///< bytes
     VkDeviceSize index_offset;   ///< bytes
+};
+
+/// Triangles that are culled and drawn as one; see mesh_format::ChunkRecord.
+struct SceneChunk {
+    glm::vec3 center;
+    float radius;
+    glm::vec3 cone_axis;
+    float cone_cutoff;
+    std::uint32_t draw;         ///< index into Scene::draws
+    std::uint32_t first_index;  ///< counted from the draw's index_offset
     std::uint32_t index_count;
 };
 
@@ -37,8 +47,8 @@ class Scene {
           float anisotropy);
 
     const Bounds& bounds() const { return bounds_; }
-    /// Opaque draws before alpha-masked ones, in each part those of one material together.
     const std::vector<Draw>& draws() const { return draws_; }
+    const std::vector<SceneChunk>& chunks() const { return chunks_; }
     VkBuffer vertices() const { return vertices_.handle.get(); }
     VkBuffer indices() const { return indices_.handle.get(); }
     std::uint64_t triangle_count() const;
@@ -66,6 +76,7 @@ class Scene {
     Sampler clamp_;
     DescriptorPool descriptor_pool_;
     std::vector<Draw> draws_;
+    std::vector<SceneChunk> chunks_;
 };
 
 /// Reads, checks and uploads a .cw2mesh file. Throws mesh_format::FileError (a source format is

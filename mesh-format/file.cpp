@@ -106,6 +106,25 @@ void check_mesh(const Checker& check, const Document& document, std::size_t i) {
     require(ordered(mesh.bounds_min, mesh.bounds_max), "its bounding box is invalid");
 }
 
+/// The mesh's chunks: one after the other they hold all its indices.
+void check_chunks(const Checker& check, const Document& document, std::size_t i) {
+    const MeshRecord& mesh = document.meshes[i];
+    check.require(in_range(mesh.first_chunk, mesh.chunk_count, document.chunks.size()), "mesh", i,
+                  "its chunks lie outside the chunk section");
+    std::uint64_t next_index = 0;
+    for (const ChunkRecord& chunk : document.chunks.subspan(mesh.first_chunk, mesh.chunk_count)) {
+        check.require(
+            chunk.first_index == next_index && chunk.index_count > 0 && chunk.index_count % 3 == 0,
+            "mesh", i, "its chunks do not follow each other");
+        check.require(all_finite(chunk.center) && std::isfinite(chunk.radius) &&
+                          all_finite(chunk.cone_axis) && std::isfinite(chunk.cone_cutoff),
+                      "mesh", i, "a chunk's bounds are not finite");
+        next_index += chunk.index_count;
+    }
+    check.require(next_index == mesh.index_count, "mesh", i,
+                  "its chunks do not hold all its indices");
+}
+
 bool valid_text(const Document& document, StringRef ref) {
     return in_range(ref.offset, ref.length, document.strings.size());
 }
@@ -151,7 +170,10 @@ void check_texture(const Checker& check, const Document& document, std::size_t i
 void check_document(const Checker& check, const Document& document) {
     check_scene(check, document.scene);
     check.require(!document.meshes.empty(), "holds no mesh");
-    for (std::size_t i = 0; i < document.meshes.size(); ++i) check_mesh(check, document, i);
+    for (std::size_t i = 0; i < document.meshes.size(); ++i) {
+        check_mesh(check, document, i);
+        check_chunks(check, document, i);
+    }
     for (std::size_t i = 0; i < document.materials.size(); ++i) check_material(check, document, i);
     for (std::size_t i = 0; i < document.textures.size(); ++i) check_texture(check, document, i);
 }
@@ -184,8 +206,9 @@ Header checked_header(const Checker& check, std::span<const std::byte> bytes) {
     return header;
 }
 
-constexpr std::array<const char*, kSectionCount> kSectionNames{
-    "scene", "meshes", "materials", "textures", "strings", "vertices", "indices", "texels"};
+constexpr std::array<const char*, kSectionCount> kSectionNames{"scene",     "meshes",   "chunks",
+                                                               "materials", "textures", "strings",
+                                                               "vertices",  "indices",  "texels"};
 
 /// The sections of a file whose header has been checked.
 class SectionReader {
@@ -264,6 +287,7 @@ Document parse(std::span<const std::byte> bytes, std::string_view name) {
     Document document;
     document.scene = scenes.front();
     document.meshes = sections.records<MeshRecord>(SectionKind::meshes);
+    document.chunks = sections.records<ChunkRecord>(SectionKind::chunks);
     document.materials = sections.records<MaterialRecord>(SectionKind::materials);
     document.textures = sections.records<TextureRecord>(SectionKind::textures);
     const auto strings = sections.bytes(SectionKind::strings);
@@ -281,6 +305,7 @@ std::uint64_t write(const Document& document, const std::filesystem::path& path)
     const std::array<std::span<const std::byte>, kSectionCount> contents{
         as_bytes(&document.scene, 1),
         std::as_bytes(document.meshes),
+        std::as_bytes(document.chunks),
         std::as_bytes(document.materials),
         std::as_bytes(document.textures),
         as_bytes(document.strings.data(), document.strings.size()),

@@ -14,6 +14,7 @@ namespace mesh_format {
 struct Document {
     SceneRecord scene{};
     std::span<const MeshRecord> meshes;
+    std::span<const ChunkRecord> chunks;
     std::span<const MaterialRecord> materials;
     std::span<const TextureRecord> textures;
     std::string_view strings;

@@ -5,6 +5,7 @@
 //
 //   scene      one SceneRecord
 //   meshes     MeshRecord[]
+//   chunks     ChunkRecord[], the chunks of all meshes, mesh after mesh
 //   materials  MaterialRecord[]
 //   textures   TextureRecord[]
 //   strings    UTF-8 bytes that StringRef points into, no terminators
@@ -33,6 +34,7 @@ inline constexpr std::uint32_t kNoTexture = 0xFFFF'FFFF;
 enum class SectionKind : std::uint32_t {
     scene,
     meshes,
+    chunks,
     materials,
     textures,
     strings,
@@ -112,7 +114,21 @@ struct MeshRecord {
     float uv_step[2];     ///< powers of two
     float bounds_min[3];  ///< of the decoded positions, scene units
     float bounds_max[3];
-    std::uint32_t reserved2;  ///< 0
+    std::uint32_t first_chunk;
+    std::uint32_t chunk_count;  ///< they follow each other and hold all the mesh's indices
+    std::uint32_t reserved2;    ///< 0
+};
+
+/// Triangles of a mesh that lie close together: what is culled and drawn as one.
+struct ChunkRecord {
+    std::uint32_t first_index;  ///< counted from the mesh's first, a multiple of 3
+    std::uint32_t index_count;  ///< a positive multiple of 3
+    float center[3];            ///< of a sphere around the decoded positions, scene units
+    float radius;
+    /// A camera at c sees only back faces if
+    /// dot(center - c, cone_axis) >= cone_cutoff * length(center - c) + radius.
+    float cone_axis[3];
+    float cone_cutoff;  ///< 1 where normals spread too far for a cone
 };
 
 enum MaterialFlags : std::uint32_t {
@@ -163,7 +179,8 @@ inline constexpr std::uint64_t kMipAlignment = 16;
 inline constexpr std::uint32_t kMaxTextureSize = 16'384;
 
 static_assert(sizeof(Section) == 24 && sizeof(Header) == 32 + 24 * kSectionCount);
-static_assert(sizeof(SceneRecord) == 48 && sizeof(MeshRecord) == 88);
+static_assert(sizeof(SceneRecord) == 48 && sizeof(MeshRecord) == 96);
+static_assert(sizeof(ChunkRecord) == 40);
 static_assert(sizeof(MaterialRecord) == 56 && sizeof(TextureRecord) == 48);
 static_assert(std::is_trivially_copyable_v<Header> && std::is_trivially_copyable_v<MeshRecord>);
 
