@@ -234,7 +234,8 @@ void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene&
     resize(target.extent);
     const interop::SceneUniforms uniforms = scene_uniforms(scene, target.extent, settings);
     std::memcpy(slots_[slot].uniforms.mapped.data(), &uniforms, sizeof uniforms);
-    find_visible(scene, uniforms.projCam, settings.camera.position, visible_);
+    find_visible(scene.chunks(), scene.draws(), uniforms.projCam, settings.camera.position,
+                 visible_);
     if (timestamps_) vkCmdResetQueryPool(commands, timestamps_.get(), 2 * slot, 2);
     write_timestamp(commands, VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, 2 * slot);
     begin_attachments(commands, target, settings);

@@ -31,14 +31,15 @@ bool faces_away(const SceneChunk& chunk, const glm::vec3& camera_position) {
 
 }  // namespace
 
-void find_visible(const Scene& scene, const glm::mat4& clip_from_world,
-                  const glm::vec3& camera_position, std::vector<std::uint32_t>& chunks) {
+void find_visible(std::span<const SceneChunk> chunks, std::span<const Draw> draws,
+                  const glm::mat4& clip_from_world, const glm::vec3& camera_position,
+                  std::vector<std::uint32_t>& visible) {
     using Rank = std::tuple<Shading, float, std::uint32_t>;
     const std::array<glm::vec4, 5> planes = frustum_planes(clip_from_world);
     std::vector<Rank> ranks;
-    for (std::uint32_t i = 0; i < scene.chunks().size(); ++i) {
-        const SceneChunk& chunk = scene.chunks()[i];
-        const Draw& draw = scene.draws()[chunk.draw];
+    for (std::uint32_t i = 0; i < chunks.size(); ++i) {
+        const SceneChunk& chunk = chunks[i];
+        const Draw& draw = draws[chunk.draw];
         const bool outside = std::any_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
             return glm::dot(glm::vec3(plane), chunk.center) + plane.w < -chunk.radius;
         });
@@ -47,8 +48,8 @@ void find_visible(const Scene& scene, const glm::mat4& clip_from_world,
                            glm::distance(chunk.center, camera_position) - chunk.radius, i);
     }
     std::sort(ranks.begin(), ranks.end());
-    chunks.clear();
-    for (const Rank& rank : ranks) chunks.push_back(std::get<2>(rank));
+    visible.clear();
+    for (const Rank& rank : ranks) visible.push_back(std::get<2>(rank));
 }
 
 }  // namespace cw2

@@ -1,0 +1,220 @@
+// Packed vertices decode to what they were within the stated errors, and without cracks.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <random>
+
+#include "cw2-bake/quantise.h"
+#include "mesh-format/tangent_frame.h"
+
+namespace {
+
+using mesh_format::FrameForm;
+using mesh_format::MeshRecord;
+using mesh_format::PositionForm;
+using mesh_format::UvForm;
+
+/// A mesh of one triangle for each three vertices.
+bake::ChunkedMesh mesh_of(std::vector<glm::vec3> positions, std::vector<glm::vec2> uvs) {
+    bake::ChunkedMesh chunked;
+    bake::FramedMesh& mesh = chunked.mesh;
+    mesh.positions = std::move(positions);
+    mesh.uvs = std::move(uvs);
+    mesh.normals.assign(mesh.positions.size(), {0.0f, 1.0f, 0.0f});
+    mesh.tangents.assign(mesh.positions.size(), {1.0f, 0.0f, 0.0f, -1.0f});
+    for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
+    chunked.chunks.push_back({0, static_cast<std::uint32_t>(mesh.indices.size())});
+    return chunked;
+}
+
+struct Decoded {
+    float position[3];
+    double uv[2];
+};
+
+/// By the specification in layout.h, in the arithmetic of a GPU: float products and sums.
+Decoded decode(const bake::PackedGeometry& packed, const MeshRecord& mesh, std::size_t vertex) {
+    const auto layout =
+        mesh_format::vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+    const std::byte* at = packed.vertices.data() + mesh.vertex_offset + vertex * layout.stride;
+    Decoded decoded{};
+    if (mesh.position_form == PositionForm::f32) {
+        std::memcpy(decoded.position, at, sizeof decoded.position);
+    } else {
+        std::uint16_t q[3];
+        std::memcpy(q, at, sizeof q);
+        for (int axis = 0; axis < 3; ++axis) {
+            decoded.position[axis] =
+                static_cast<float>(mesh.origin[axis] + q[axis]) * packed.scene.position_step;
+        }
+    }
+    if (mesh.uv_form == UvForm::f32) {
+        float uv[2];
+        std::memcpy(uv, at + layout.uv_offset, sizeof uv);
+        decoded.uv[0] = uv[0];
+        decoded.uv[1] = uv[1];
+    } else {
+        std::uint16_t q[2];
+        std::memcpy(q, at + layout.uv_offset, sizeof q);
+        for (int axis = 0; axis < 2; ++axis) {
+            decoded.uv[axis] =
+                mesh.uv_origin[axis] + mesh.uv_step[axis] * static_cast<float>(q[axis]);
+        }
+    }
+    return decoded;
+}
+
+std::vector<glm::vec3> random_points(std::mt19937& random, std::size_t count, glm::vec3 center,
+                                     float extent) {
+    std::uniform_real_distribution<float> offset(-0.5f * extent, 0.5f * extent);
+    std::vector<glm::vec3> points(count);
+    for (glm::vec3& point : points) {
+        point = center + glm::vec3(offset(random), offset(random), offset(random));
+    }
+    return points;
+}
+
+std::vector<glm::vec2> random_uvs(std::mt19937& random, std::size_t count, float low, float high) {
+    std::uniform_real_distribution<float> coordinate(low, high);
+    std::vector<glm::vec2> uvs(count);
+    for (glm::vec2& uv : uvs) uv = {coordinate(random), coordinate(random)};
+    return uvs;
+}
+
+constexpr bake::QuantiseSettings kDefault{FrameForm::quat48, PositionForm::quantised};
+
+TEST(Quantise, ErrorsAreAsStatedAndWithinBudgetForAnySizeAndPlace) {
+    std::mt19937 random(1);
+    for (const float extent : {1e-6f, 0.01f, 1.0f, 77.0f, 1e5f}) {
+        for (const float distance : {0.0f, 1.0f, 100.0f}) {
+            const std::vector meshes{
+                mesh_of(random_points(random, 300, glm::vec3(distance * extent), extent),
+                        random_uvs(random, 300, -0.3f, 1.7f))};
+            const bake::UvBudget budget;
+            const auto packed = bake::quantise(meshes, {&budget, 1}, kDefault);
+            double position_error = 0.0;
+            double uv_error = 0.0;
+            for (std::size_t i = 0; i < 300; ++i) {
+                const Decoded decoded = decode(packed, packed.meshes[0], i);
+                double square = 0.0;
+                for (int axis = 0; axis < 3; ++axis) {
+                    const double error =
+                        double{decoded.position[axis]} - meshes[0].mesh.positions[i][axis];
+                    EXPECT_LE(std::abs(error), extent / 65'535.0);
+                    square += error * error;
+                }
+                position_error = std::max(position_error, std::sqrt(square));
+                for (int axis = 0; axis < 2; ++axis) {
+                    double error = decoded.uv[axis] - meshes[0].mesh.uvs[i][axis];
+                    error -= std::round(error);  // whole numbers may be taken away
+                    uv_error = std::max(uv_error, std::abs(error) * budget.texels);
+                }
+            }
+            EXPECT_NEAR(packed.scene.position_error, position_error, 1e-6 * position_error);
+            EXPECT_NEAR(packed.scene.uv_error, uv_error, 1e-4);
+            EXPECT_LE(uv_error, 0.125);
+        }
+    }
+}
+
+TEST(Quantise, EqualPositionsDecodeToEqualBitsInEveryMesh) {
+    std::mt19937 random(2);
+    const auto shared = random_points(random, 99, {3.0f, -5.0f, 0.7f}, 0.5f);
+    std::vector<bake::ChunkedMesh> meshes;
+    for (int i = 0; i < 4; ++i) {
+        auto points = random_points(random, 300, glm::vec3(static_cast<float>(i)), 9.0f);
+        points.insert(points.end(), shared.begin(), shared.end());
+        meshes.push_back(mesh_of(points, random_uvs(random, points.size(), 0.0f, 1.0f)));
+    }
+    const bake::UvBudget budget;
+    const auto packed = bake::quantise(meshes, {&budget, 1}, kDefault);
+    for (std::size_t i = 0; i < shared.size(); ++i) {
+        const Decoded first = decode(packed, packed.meshes[0], 300 + i);
+        for (const MeshRecord& mesh : packed.meshes) {
+            const Decoded other = decode(packed, mesh, 300 + i);
+            EXPECT_EQ(0, std::memcmp(first.position, other.position, sizeof first.position));
+        }
+    }
+}
+
+TEST(Quantise, BoundsHoldTheDecodedVerticesExactly) {
+    std::mt19937 random(3);
+    const std::vector meshes{mesh_of(random_points(random, 300, {1.0f, 2.0f, 3.0f}, 5.0f),
+                                     random_uvs(random, 300, 0.0f, 1.0f))};
+    const bake::UvBudget budget;
+    const auto packed = bake::quantise(meshes, {&budget, 1}, kDefault);
+    float low[3], high[3];
+    for (std::size_t i = 0; i < 300; ++i) {
+        const Decoded decoded = decode(packed, packed.meshes[0], i);
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis] =
+                i == 0 ? decoded.position[axis] : std::min(low[axis], decoded.position[axis]);
+            high[axis] =
+                i == 0 ? decoded.position[axis] : std::max(high[axis], decoded.position[axis]);
+        }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(packed.scene.bounds_min[axis], low[axis]);
+        EXPECT_EQ(packed.scene.bounds_max[axis], high[axis]);
+    }
+}
+
+TEST(Quantise, PointLikeMeshesKeepTheirPlace) {
+    const std::vector meshes{mesh_of({{0.1f, 0.3f, 0.7f}, {0.1f, 0.3f, 0.7f}, {0.1f, 0.3f, 0.7f}},
+                                     {{0.5f, 0.25f}, {0.5f, 0.25f}, {0.5f, 0.25f}})};
+    const bake::UvBudget budget;
+    const auto packed = bake::quantise(meshes, {&budget, 1}, kDefault);
+    const Decoded decoded = decode(packed, packed.meshes[0], 1);
+    EXPECT_FLOAT_EQ(decoded.position[0], 0.1f);
+    EXPECT_FLOAT_EQ(decoded.position[1], 0.3f);
+    EXPECT_FLOAT_EQ(decoded.position[2], 0.7f);
+    EXPECT_EQ(decoded.uv[0], 0.5);
+    EXPECT_EQ(decoded.uv[1], 0.25);
+}
+
+TEST(Quantise, UvsThatWouldMissTheirBudgetStayFloats) {
+    std::mt19937 random(4);
+    const auto points = random_points(random, 300, {}, 1.0f);
+    const std::vector meshes{mesh_of(points, random_uvs(random, 300, 0.0f, 100.0f))};
+    for (const std::uint32_t texels : {64u, 2048u}) {
+        const bake::UvBudget budget{.texels = texels};
+        const auto packed = bake::quantise(meshes, {&budget, 1}, kDefault);
+        EXPECT_EQ(packed.meshes[0].uv_form, texels == 64 ? UvForm::quantised : UvForm::f32);
+        EXPECT_LE(packed.scene.uv_error, 0.125f);
+        for (std::size_t i = 0; i < 300; ++i) {
+            EXPECT_NEAR(decode(packed, packed.meshes[0], i).uv[0], meshes[0].mesh.uvs[i].x,
+                        0.13 / texels);
+        }
+    }
+}
+
+TEST(Quantise, ClampedUvsAreNotShifted) {
+    const std::vector meshes{
+        mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, {{5.0f, 5.0f}, {5.5f, 5.0f}, {5.0f, 5.5f}})};
+    const bake::UvBudget repeats, clamps{.shiftable = false};
+    const auto shifted = bake::quantise(meshes, {&repeats, 1}, kDefault);
+    const auto kept = bake::quantise(meshes, {&clamps, 1}, kDefault);
+    EXPECT_EQ(decode(shifted, shifted.meshes[0], 1).uv[0], 0.5);
+    EXPECT_EQ(decode(kept, kept.meshes[0], 1).uv[0], 5.5);
+}
+
+TEST(Quantise, FloatFormsAreExact) {
+    std::mt19937 random(5);
+    const std::vector meshes{mesh_of(random_points(random, 300, {9.0f, 1.0f, 4.0f}, 2.0f),
+                                     random_uvs(random, 300, -7.0f, 3.0f))};
+    const bake::UvBudget budget;
+    const auto packed = bake::quantise(meshes, {&budget, 1}, {FrameForm::f32, PositionForm::f32});
+    for (std::size_t i = 0; i < 300; ++i) {
+        const Decoded decoded = decode(packed, packed.meshes[0], i);
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_EQ(decoded.position[axis], meshes[0].mesh.positions[i][axis]);
+        }
+        EXPECT_EQ(decoded.uv[1], double{meshes[0].mesh.uvs[i].y});
+    }
+    EXPECT_EQ(packed.scene.position_error, 0.0f);
+    EXPECT_EQ(packed.scene.uv_error, 0.0f);
+}
+
+}  // namespace
