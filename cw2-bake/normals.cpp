@@ -10,9 +10,9 @@
 namespace bake {
 namespace {
 
-/// Directions closer than this, in radians, are one where triangles of a polygon are told from
-/// triangles of a curved surface.
-constexpr double kSamePlane = 1e-4;
+/// Triangles of one polygon follow each other, and their directions differ by rounding only: those
+/// closer than this, in radians, are taken for one.
+constexpr double kSameDirection = 1e-4;
 
 /// Of length 1; zero for a zero vector.
 glm::dvec3 unit(const glm::dvec3& v) {
@@ -100,8 +100,7 @@ class FlatNormals {
         if (triangle == triangle_) return index_;
         glm::dvec3 normal = normal_of(triangle_of(scene_, triangle));
         if (normal == glm::dvec3{0.0}) normal = {0, 1, 0};
-        const bool follows = triangle > 0 && triangle - 1 == triangle_ && shares_edge(triangle);
-        if (!follows || glm::length(normal - normal_) > kSamePlane) {
+        if (glm::length(normal - normal_) > kSameDirection) {
             normal_ = normal;
             index_ = static_cast<std::uint32_t>(scene_.normals.size());
             scene_.normals.push_back(stored(normal));
@@ -111,20 +110,8 @@ class FlatNormals {
     }
 
  private:
-    static constexpr std::size_t kNone = ~std::size_t{0};
-
-    /// With the triangle before it.
-    bool shares_edge(std::size_t triangle) const {
-        const Corner* corners = scene_.corners.data() + 3 * triangle;
-        int shared = 0;
-        for (int i = 0; i < 3; ++i) {
-            for (int j = -3; j < 0; ++j) shared += corners[i].position == corners[j].position;
-        }
-        return shared >= 2;
-    }
-
     SourceScene& scene_;
-    std::size_t triangle_ = kNone;  // the last one asked for, and its normal
+    std::size_t triangle_ = ~std::size_t{0};  // the last one asked for, and its normal
     std::uint32_t index_ = 0;
     glm::dvec3 normal_{0.0};
 };

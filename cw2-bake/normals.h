@@ -11,7 +11,7 @@ namespace bake {
 /// normalised, of the normals of the group's triangles around its position, each weighted by the
 /// triangle's angle there (Thuermer and Wuethrich 1998); positions are one where their values are
 /// equal. Where that sum vanishes the triangle's own normal serves, and +Y where that has no area.
-/// Triangles that follow each other, share an edge and lie in one plane share one normal.
+/// Triangles that follow each other and face one way, to within 1e-4 radians, share one normal.
 void generate_normals(SourceScene& scene);
 
 }  // namespace bake

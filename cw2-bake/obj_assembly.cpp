@@ -182,7 +182,8 @@ void release(std::string_view text, std::size_t begin, std::size_t end) {
     const auto page_of = [&](std::size_t offset) {
         return reinterpret_cast<std::uintptr_t>(text.data() + offset) / page * page;
     };
-    madvise(reinterpret_cast<void*>(page_of(begin)), page_of(end) - page_of(begin), MADV_DONTNEED);
+    const std::uintptr_t size = page_of(end) - page_of(begin);
+    if (size > 0) madvise(reinterpret_cast<void*>(page_of(begin)), size, MADV_DONTNEED);
 }
 
 struct Piece {

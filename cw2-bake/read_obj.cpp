@@ -55,13 +55,16 @@ void triangulate_polygons(const std::vector<ObjPolygon>& polygons, SourceScene& 
     });
 }
 
-/// Forgets normals of no length, and says which triangles are smoothed.
+/// Forgets normals of no length, and says which triangles are smoothed if some corner now has none.
 void prepare_missing_normals(const std::vector<ObjSmoothingUse>& uses, SourceScene& scene) {
+    bool complete = true;
     for (Corner& corner : scene.corners) {
         if (corner.normal != kAbsent && scene.normals[corner.normal] == glm::vec3{0.0f}) {
             corner.normal = kAbsent;
         }
+        complete &= corner.normal != kAbsent;
     }
+    if (complete) return;
     scene.smoothing_group.resize(scene.triangle_material.size(), 0);
     for (std::size_t i = 0; i < uses.size(); ++i) {
         const std::size_t end =

@@ -112,9 +112,13 @@ bool Triangulator::blocks(std::uint32_t q, const Triangle& ear, Rule rule) const
     if (along_ab < 0 || along_bc < 0 || along_ca < 0) return false;
     if (points_[q] == points_[a] || points_[q] == points_[c]) return false;
     if (points_[q] != points_[b]) return true;
-    // The outline touches itself at b: no harm unless it goes into the ear from there.
-    const auto goes_in = [&](std::uint32_t to) { return turn(a, b, to) > 0 && turn(b, c, to) > 0; };
-    return goes_in(previous_[q]) || goes_in(next_[q]);
+    // The outline touches itself at b: no harm unless it goes into the ear from there, or runs back
+    // along both its sides, when there may be nothing between them.
+    const std::uint32_t from = previous_[q], to = next_[q];
+    const double from_ab = turn(a, b, from), from_bc = turn(b, c, from);
+    const double to_ab = turn(a, b, to), to_bc = turn(b, c, to);
+    return (from_ab > 0 && from_bc > 0) || (to_ab > 0 && to_bc > 0) ||
+           (from_ab > 0 && from_bc == 0 && to_ab == 0 && to_bc > 0);
 }
 
 bool Triangulator::may_clip(std::uint32_t v, Rule rule) const {

@@ -1,0 +1,362 @@
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cw2-bake/read_obj.h"
+#include "obj_text.h"
+
+namespace {
+
+using bake::BakeError;
+using bake::kAbsent;
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size()) {
+        text.replace(at, from.size(), to);
+    }
+    return text;
+}
+
+struct Twin {
+    const char* what;
+    std::string odd;
+    std::string plain;
+};
+
+class OddSyntax : public testing::TestWithParam<Twin> {};
+
+TEST_P(OddSyntax, ReadsLikeItsPlainTwin) {
+    for (const std::size_t chunk : {1, 20, 1 << 18}) {
+        const TempFolder folder;
+        EXPECT_EQ(corner_values(read(folder, GetParam().odd, chunk).scene),
+                  corner_values(read(GetParam().plain).scene));
+    }
+}
+
+const std::string kPlain =
+    kSquare + "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\ns 2\nusemtl a b\nf 1/1/1 2/2/1 3/3/1\nf 1 3 4\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    ReadObj, OddSyntax,
+    testing::Values(
+        Twin{"crlf", replaced(kPlain, "\n", "\r\n"), kPlain},
+        Twin{"cr", replaced(kPlain, "\n", "\r"), kPlain},
+        Twin{"mixed_line_ends", replaced(replaced(kPlain, "\nvt", "\r\nvt"), "\nf", "\rf"), kPlain},
+        Twin{"no_last_line_end", kPlain.substr(0, kPlain.size() - 1), kPlain},
+        Twin{"bom", "\xEF\xBB\xBF" + kPlain, kPlain},
+        Twin{"tabs", replaced(kPlain, " ", "\t"), replaced(kPlain, "a b", "a\tb")},
+        Twin{"leading_blanks", "  " + replaced(kPlain, "\n", "\n \t "), kPlain},
+        Twin{"trailing_blanks", replaced(kPlain, "\n", " \t\n"), kPlain},
+        Twin{"blank_lines", replaced(kPlain, "\n", "\n\n \n"), kPlain},
+        Twin{"comments", replaced(kPlain, "\nf", "\n# f 9 9 9 \\\nf"), kPlain},
+        Twin{"comment_behind_face", replaced(kPlain, "3 4\n", "3 4 # a face\n"), kPlain},
+        Twin{"comment_behind_vertex", replaced(kPlain, "v 1 1 0\n", "v 1 1 0#\n"), kPlain},
+        Twin{"continuations", replaced(kPlain, " 3", " \\\n3"), kPlain},
+        Twin{"continuation_without_blank", replaced(kPlain, "f 1 3", "f 1\\\n3"), kPlain},
+        Twin{"continuations_crlf", replaced(kPlain, " 1", " \\\r\n 1"), kPlain},
+        Twin{"continuations_cr", replaced(kPlain, " 1", " \\\r 1"), kPlain},
+        Twin{"continued_keyword", replaced(kPlain, "v 1 1 0", "v\\\n 1 1 0"), kPlain},
+        Twin{"continued_name", replaced(kPlain, "usemtl a", "usemtl \\\na"), kPlain},
+        Twin{"continuation_at_the_end", kPlain.substr(0, kPlain.size() - 1) + "\\", kPlain},
+        Twin{"continued_extra_words", replaced(kPlain, "v 1 1 0", "v 1 1 0 .5 \\\n .5 .5"), kPlain},
+        Twin{"negative_indices", replaced(kPlain, "f 1 3 4", "f -4 -2 -1"), kPlain},
+        Twin{"mixed_indices", replaced(kPlain, "1/1/1 2/2/1", "1/-3/1 -3/2/-1"), kPlain},
+        Twin{"negative_index_of_then",
+             replaced(kPlain, "f 1 3 4\n", "f 1 3 -1\nv 7 7 7\nvt 7 7\nvn 1 0 0\n"), kPlain},
+        Twin{"faces_before_vertices", "s 2\nusemtl a b\nf 1 2 3 4\n" + kSquare,
+             kSquare + "s 2\nusemtl a b\nf 1 2 3 4\n"},
+        Twin{"empty_uv_and_normal", replaced(kPlain, "f 1 3 4", "f 1/ 3// 4/"), kPlain},
+        Twin{"mixed_within_a_face", kSquare + "vt 0 1\nf 1/1 2 3/1\n",
+             kSquare + "vt 0 1\nvt 0 1\nf 1/1 2 3/2\n"},
+        Twin{"vertex_colours", replaced(kPlain, "v 1 1 0", "v 1 1 0 0.5 0.25 nan"), kPlain},
+        Twin{"w", replaced(kPlain, "v 1 1 0", "v 1 1 0 2.0"), kPlain},
+        Twin{"uv_of_three", replaced(kPlain, "vt 1 1", "vt 1 1 0.5"), kPlain},
+        Twin{"uv_of_one", replaced(kPlain, "vt 1 0", "vt 1"), kPlain},
+        Twin{"number_forms", replaced(kPlain, "v 1 1 0", "v +1. 10e-1 -.0e+3"), kPlain},
+        Twin{"too_small_a_number", replaced(kPlain, "v 1 1 0", "v 1 1 1e-999"), kPlain},
+        Twin{"normal_of_any_length", replaced(kPlain, "vn 0 0 1", "vn 0 -0 1e-30"), kPlain},
+        Twin{"points_and_lines", replaced(kPlain, "\nf", "\np 1\nl 1 2 \\\n 3\nf"), kPlain},
+        Twin{"unknown_statements", replaced(kPlain, "\nf", "\nlod 3\nfoo bar\nvp 1 2\nf"), kPlain},
+        Twin{"groups", replaced(kPlain, "\nf", "\ng a b\no c d\nmg 1\nf"), kPlain},
+        Twin{"smoothing_off", replaced(kPlain, "s 2", "s off"), replaced(kPlain, "s 2\n", "")},
+        Twin{"smoothing_0", replaced(kPlain, "s 2", "s 0"), replaced(kPlain, "s 2\n", "")},
+        Twin{"smoothing_on", replaced(kPlain, "s 2", "s on"), replaced(kPlain, "s 2", "s 1")},
+        Twin{"smoothing_mask", replaced(kPlain, "s 2", "s 4294967295"),
+             replaced(kPlain, "s 2", "s \t4294967295 ")},
+        Twin{"long_line", replaced(kPlain, "f 1 3", "f 1" + std::string(300'000, ' ') + "3"),
+             kPlain}),
+    [](const auto& test) { return std::string(test.param.what); });
+
+TEST(ReadObj, KeepsValuesNormalisesNormalsAndHasNoMinusZero) {
+    const auto scene = read(kSquare +
+                            "v -0 -0.0 1\nvn 0 3 -4\nvn -0 -1e-50 2\nvt -0 0.3\n"
+                            "f 5/1/1 2/1/1 3/1/2\n")
+                           .scene;
+    EXPECT_EQ(scene.positions[4], glm::vec3(0, 0, 1));
+    EXPECT_EQ(scene.normals[0], glm::vec3(0, 0.6f, -0.8f));
+    EXPECT_EQ(scene.uvs[0], glm::vec2(0, 0.3f));
+    for (const float zero : {scene.positions[4].x, scene.positions[4].y, scene.normals[1].x,
+                             scene.normals[1].y, scene.uvs[0].x}) {
+        EXPECT_FALSE(std::signbit(zero));
+    }
+    EXPECT_TRUE(scene.smoothing_group.empty());
+}
+
+TEST(ReadObj, CountsAZeroNormalAsMissing) {
+    const auto scene = read(kSquare + "vn 0 0 0\nvn 0 0 1\ns 3\nf 1//1 2//2 3//1\n").scene;
+    EXPECT_EQ(scene.corners[0].normal, kAbsent);
+    EXPECT_EQ(scene.corners[1].normal, 1u);
+    EXPECT_EQ(scene.smoothing_group, std::vector<std::uint32_t>{3});
+}
+
+TEST(ReadObj, OrdersMaterialsByFirstUseAndDropsUnused) {
+    const auto scene = read(kSquare +
+                            "usemtl x\nusemtl c\nf 1 2 3\nusemtl a\nf 1 2 3\n"
+                            "usemtl c\nf 1 2 3\n")
+                           .scene;
+    ASSERT_EQ(scene.materials.size(), 2u);
+    EXPECT_EQ(scene.materials[0].name, "c");
+    EXPECT_EQ(scene.materials[1].name, "a");
+    EXPECT_EQ(scene.triangle_material, (std::vector<std::uint32_t>{0, 1, 0}));
+}
+
+TEST(ReadObj, GivesFacesBeforeAnyUsemtlADefaultMaterialOfNoLibrary) {
+    const TempFolder folder;
+    folder.write("m.mtl", "newmtl default\nKd 1 0 0\n");
+    const auto reading = read(folder, "mtllib m.mtl\n" + kSquare + "f 1 2 3\n");
+    ASSERT_EQ(reading.scene.materials.size(), 1u);
+    EXPECT_EQ(reading.scene.materials[0].name, "default");
+    EXPECT_EQ(reading.scene.materials[0].base_color, glm::vec3(0.8f));
+    EXPECT_TRUE(reading.warnings.empty());
+}
+
+float red_of(const TempFolder& folder, const std::string& text) {
+    const auto reading = read(folder, text);
+    for (const std::string& warning : reading.warnings) ADD_FAILURE() << warning;
+    return reading.scene.materials.at(0).base_color.x;
+}
+
+TEST(ReadObj, FindsLibrariesHoweverTheyAreNamed) {
+    const TempFolder folder;
+    folder.write("one.mtl", "newmtl a\nKd 0.25 0 0\n");
+    folder.write("two.mtl", "newmtl b\nKd 0.5 0 0\nnewmtl a\nKd 0.9 0 0\n");
+    folder.write("sub dir/with blanks.mtl", "\xEF\xBB\xBFnewmtl a b\r\nKd 0.75 0 0\r\n");
+    const std::string face = kSquare + "f 1 2 3\n";
+    EXPECT_EQ(red_of(folder, "mtllib one.mtl\nusemtl a\n" + face), 0.25f);
+    EXPECT_EQ(red_of(folder, "usemtl a\n" + face + "mtllib one.mtl\n"), 0.25f);
+    EXPECT_EQ(red_of(folder, "mtllib one.mtl\ttwo.mtl \nusemtl b\n" + face), 0.5f);
+    EXPECT_EQ(red_of(folder, "mtllib one.mtl\nmtllib two.mtl\nusemtl a\n" + face), 0.25f);
+    EXPECT_EQ(red_of(folder, "mtllib sub dir\\with blanks.mtl\nusemtl a b\n" + face), 0.75f);
+    EXPECT_EQ(red_of(folder, "mtllib ./sub dir/with blanks.mtl \nusemtl  a b \r\n" + face), 0.75f);
+}
+
+TEST(ReadObj, WarnsOfWhatIsMissingAndGoesOn) {
+    const TempFolder folder;
+    folder.write("m.mtl", "newmtl a\n");
+    const std::string faces = kSquare + "usemtl q\nf 1 2 3\nusemtl r\nf 1 2 3\nusemtl q\nf 1 2 3\n";
+    auto reading = read(folder, "\nmtllib no such.mtl\n" + faces);
+    EXPECT_EQ(reading.warnings,
+              std::vector<std::string>{"scene.obj:2: no material library 'no such.mtl'"});
+    EXPECT_EQ(reading.scene.materials.at(1).name, "r");
+    reading = read(folder, "mtllib m.mtl gone.mtl\n" + faces);
+    EXPECT_EQ(reading.warnings,
+              std::vector<std::string>{"scene.obj:1: no material library 'gone.mtl'"});
+    reading = read(folder, "mtllib m.mtl\n" + faces);
+    ASSERT_EQ(reading.warnings.size(), 2u);
+    EXPECT_TRUE(reading.warnings[0].starts_with("scene.obj:6: no material library defines 'q'"));
+    EXPECT_TRUE(reading.warnings[1].starts_with("scene.obj:8: no material library defines 'r'"));
+    std::filesystem::create_directory(folder.path() / "folder.mtl");
+    EXPECT_EQ(read(folder, "mtllib folder.mtl\n" + faces).warnings.size(), 1u);
+}
+
+TEST(ReadObj, WarnsOnceOfEachThingItLeavesOut) {
+    const auto reading =
+        read(kSquare + "f 1 2\nf\ncurv 0 1 1 2\nsurf 1 2\ncurv 0 1 1 3\nf 1 2 3\n");
+    ASSERT_EQ(reading.warnings.size(), 3u);
+    EXPECT_EQ(reading.warnings[0], "scene.obj:7: 'curv' is not supported and left out");
+    EXPECT_EQ(reading.warnings[1], "scene.obj:8: 'surf' is not supported and left out");
+    EXPECT_EQ(reading.warnings[2],
+              "scene.obj:5: a face of fewer than three corners is left out (2 in all)");
+    EXPECT_EQ(reading.scene.corners.size(), 3u);
+}
+
+struct Bad {
+    const char* what;
+    std::string text;
+    std::string message;  ///< or how it starts
+};
+
+class BadObj : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadObj, IsRefusedAtTheRightLine) {
+    std::string text = GetParam().text;
+    for (const auto* line_end : {"\n", "\r", "\r\n"}) {
+        for (const std::size_t chunk : {1, 30, 1 << 18}) {
+            const std::string message = error_of(replaced(text, "\n", line_end), chunk);
+            EXPECT_EQ(message.substr(0, GetParam().message.size()), GetParam().message);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ReadObj, BadObj,
+    testing::Values(
+        Bad{"empty", "", "scene.obj: has no faces"},
+        Bad{"only_vertices", kSquare, "scene.obj: has no faces"},
+        Bad{"prose", "Dear reader,\nthis is no model.\n", "scene.obj: has no faces"},
+        Bad{"binary", std::string("\x89PNG\n\x1a\n\0\0\0\rIHDR", 15), "scene.obj: is no OBJ"},
+        Bad{"too_large", kSquare + "f 1 2 5\n",
+            "scene.obj:5: vertex index 5 is out of range: the file has 4"},
+        Bad{"too_large_uv", kSquare + "vt 0 0\nf 1/1 2/2 3/1\n",
+            "scene.obj:6: texture coordinate index 2 is out of range: the file has 1"},
+        Bad{"too_large_normal", kSquare + "\nf 1//1 2//1 3//1\n",
+            "scene.obj:6: normal index 1 is out of range: the file has 0"},
+        Bad{"far_too_large", kSquare + "f 1 2 4294967297\n",
+            "scene.obj:5: vertex index 4294967297 is out of range"},
+        Bad{"enormous", kSquare + "f 1 2 184467440737095516170001\n",
+            "scene.obj:5: vertex index 184467440737095516170001 is out of range"},
+        Bad{"too_negative", kSquare + "f 1 2 3\nf 1 2 -5\nv 1 2 3\n",
+            "scene.obj:6: vertex index -5 is out of range: 4 come before it"},
+        Bad{"far_too_negative", kSquare + "f 1 2 -4294967297\n",
+            "scene.obj:5: vertex index -4294967297 is out of range"},
+        Bad{"negative_uv", kSquare + "vt 0 0\nf 1/-1 2/-1 3/-2\n",
+            "scene.obj:6: texture coordinate index -2 is out of range: 1 come before it"},
+        Bad{"first_of_two", kSquare + "f 1 2 9\nf 1 2 -9\n", "scene.obj:5: vertex index 9"},
+        Bad{"zero", kSquare + "f 0 1 2\n", "scene.obj:5: vertex index 0: indices count from 1"},
+        Bad{"zero_normal", kSquare + "f 1//0 1 2\n", "scene.obj:5: normal index 0"},
+        Bad{"no_index", kSquare + "f 1 2 x\n", "scene.obj:5: 'x' is not an index"},
+        Bad{"fraction", kSquare + "f 1 2 3.5\n", "scene.obj:5: '3.5' is not a corner"},
+        Bad{"four_parts", kSquare + "f 1/1/1/1 2 3\n", "scene.obj:5: "},
+        Bad{"lone_minus", kSquare + "f 1 2 -\n", "scene.obj:5: '-' is not an index"},
+        Bad{"nan", kSquare + "v 1 nan 0\n", "scene.obj:5: 'nan' is not a finite number"},
+        Bad{"inf", kSquare + "vn 1 -inf 0\n", "scene.obj:5: '-inf' is not a finite number"},
+        Bad{"overflow", kSquare + "vt 1e39 0\n", "scene.obj:5: '1e39' is not a finite number"},
+        Bad{"word", kSquare + "v 1 two 3\n", "scene.obj:5: 'two' is not a number"},
+        Bad{"comma", kSquare + "v 1,5 2 3\n", "scene.obj:5: '1,5' is not a number"},
+        Bad{"too_few", kSquare + "v 1 2\n", "scene.obj:5: a number is missing"},
+        Bad{"none", kSquare + "v\n", "scene.obj:5: a number is missing"},
+        Bad{"no_uv", kSquare + "vt\n", "scene.obj:5: a number is missing"},
+        Bad{"commented_away", kSquare + "v 1 2 # 3\n", "scene.obj:5: a number is missing"},
+        Bad{"smoothing", kSquare + "s x\n", "scene.obj:5: 'x' is not a smoothing group"},
+        Bad{"negative_smoothing", kSquare + "s -1\n", "scene.obj:5: '-1' is not a smoothing group"},
+        Bad{"statement_of_lines", kSquare + "# c\n\nf 1 \\\n 2 \\\n 9\nf 1 2 3\n",
+            "scene.obj:7: vertex index 9"},
+        Bad{"behind_continuation", kSquare + "f 1 \\\n 2 \\\n 3\nv 1 2 x\n",
+            "scene.obj:8: 'x' is not a number"},
+        Bad{"last_line", kSquare + "f 1 2 3\nf 1 2 x", "scene.obj:6: 'x' is not an index"}),
+    [](const auto& test) { return std::string(test.param.what); });
+
+TEST(ReadObj, NamesAMissingFileAndADirectory) {
+    const TempFolder folder;
+    const auto message = [](const std::filesystem::path& path) -> std::string {
+        try {
+            bake::read_obj(path, [](const std::string&) {});
+        } catch (const BakeError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_TRUE(
+        message(folder.path() / "no.obj").starts_with((folder.path() / "no.obj: ").string()));
+    EXPECT_TRUE(message(folder.path()).starts_with(folder.path().string() + ": "));
+}
+
+bool same(const bake::SourceScene& a, const bake::SourceScene& b) {
+    return a.positions == b.positions && a.normals == b.normals && a.uvs == b.uvs &&
+           a.triangle_material == b.triangle_material && corner_values(a) == corner_values(b);
+}
+
+TEST(ReadObj, DependsNeitherOnThePiecesNorOnTheThreads) {
+    std::mt19937 random(1);
+    for (int i = 0; i < 10; ++i) {
+        const TempFolder folder;
+        const std::string text = random_obj(random, 60, 8);
+        const auto whole = read(folder, text, text.size()).scene;
+        EXPECT_FALSE(whole.corners.empty());
+        for (const std::size_t chunk : {1, 13, 100, 1000}) {
+            for (const std::size_t threads : {1, 2, 5}) {
+                const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                                  threads);
+                EXPECT_TRUE(same(read(folder, text, chunk).scene, whole));
+            }
+        }
+    }
+}
+
+/// What SourceScene promises.
+void expect_contract(const bake::SourceScene& scene) {
+    const auto good = [](float x) { return std::isfinite(x) && !(x == 0 && std::signbit(x)); };
+    for (const auto& p : scene.positions) ASSERT_TRUE(good(p.x) && good(p.y) && good(p.z));
+    for (const auto& n : scene.normals) ASSERT_TRUE(good(n.x) && good(n.y) && good(n.z));
+    for (const auto& uv : scene.uvs) ASSERT_TRUE(good(uv.x) && good(uv.y));
+    ASSERT_FALSE(scene.corners.empty());
+    ASSERT_EQ(scene.corners.size(), 3 * scene.triangle_material.size());
+    bool complete = true;
+    for (const bake::Corner& corner : scene.corners) {
+        ASSERT_LT(corner.position, scene.positions.size());
+        ASSERT_TRUE(corner.uv == kAbsent || corner.uv < scene.uvs.size());
+        complete &= corner.normal != kAbsent;
+        if (corner.normal == kAbsent) continue;
+        ASSERT_LT(corner.normal, scene.normals.size());
+        const glm::vec3 n = scene.normals[corner.normal];
+        ASSERT_NEAR(std::hypot(n.x, n.y, n.z), 1, 1e-5);
+    }
+    ASSERT_EQ(scene.smoothing_group.size(), complete ? 0 : scene.triangle_material.size());
+    std::vector<bool> used(scene.materials.size());
+    for (const std::uint32_t material : scene.triangle_material) {
+        ASSERT_LT(material, scene.materials.size());
+        used[material] = true;
+    }
+    ASSERT_EQ(std::count(used.begin(), used.end(), false), 0);
+}
+
+TEST(ReadObj, EndsInASoundSceneOrAnErrorHoweverAFileIsAltered) {
+    std::mt19937 random(2);
+    const auto pick = [&](std::size_t below) {
+        return std::uniform_int_distribution<std::size_t>(0, below - 1)(random);
+    };
+    const std::string seed =
+        random_obj(random, 6, 7) + "f 1 2 \\\n 3 4\ns off\r\nusemtl x y\rf 1 2 3";
+    const std::string odd("\\\n\r \t/-+.0123456789eEvtnfs#\0\xFFnaif", 34);
+    const TempFolder folder;
+    folder.write("scene.mtl", "newmtl m1\nKd 1 0 0\n");
+    int scenes = 0, errors = 0;
+    for (int i = 0; i < 2500; ++i) {
+        std::string text = seed;
+        for (std::size_t n = 1 + pick(4); n > 0 && !text.empty(); --n) {
+            const std::size_t at = pick(text.size()), length = pick(12);
+            switch (pick(5)) {
+                case 0:
+                    text[at] = odd[pick(odd.size())];
+                    break;
+                case 1:
+                    text.insert(at, 1, odd[pick(odd.size())]);
+                    break;
+                case 2:
+                    text.erase(at, length);
+                    break;
+                case 3:
+                    text.insert(pick(text.size()), text.substr(at, length));
+                    break;
+                default:
+                    text.resize(at);
+                    break;
+            }
+        }
+        try {
+            expect_contract(read(folder, text, 1 + pick(300)).scene);
+            ++scenes;
+        } catch (const BakeError& error) {
+            ++errors;
+            EXPECT_EQ(std::string(error.what()).find((folder.path() / "scene.obj:").string()), 0u);
+        }
+        if (HasFatalFailure()) FAIL() << text;
+    }
+    EXPECT_GT(scenes, 200);
+    EXPECT_GT(errors, 200);
+}
+
+}  // namespace
