@@ -29,7 +29,7 @@ FramedMesh add_tangents(const WeldedMesh& mesh) {
             *link = static_cast<std::uint32_t>(framed.positions.size());
             framed.positions.push_back(mesh.positions[source]);
             framed.normals.push_back(mesh.normals[source]);
-            framed.uvs.push_back(mesh.uvs[source]);
+            framed.uvs.emplace_back(mesh.uvs[source].x, 1.0f - mesh.uvs[source].y);
             framed.tangents.push_back(tangent);
             framed.indices.push_back(*link);
             next.push_back(kNone);  // may move what `link` points to: the last use of it is above

@@ -15,13 +15,13 @@ namespace bake {
 struct FramedMesh {
     std::uint32_t material = 0;
     std::vector<glm::vec3> positions, normals;
-    std::vector<glm::vec2> uvs;
+    std::vector<glm::vec2> uvs;       ///< as the file has them: v = 0 is the top row
     std::vector<glm::vec4> tangents;  ///< see tangents.h
     std::vector<std::uint32_t> indices;
 };
 
-/// Gives `mesh` its tangents: vertices whose corners differ in them are split. Vertices come in
-/// the order of their first use.
+/// Gives `mesh` its tangents, which follow OBJ's v (up), and turns v down: vertices whose corners
+/// differ in them are split. Vertices come in the order of their first use.
 FramedMesh add_tangents(const WeldedMesh& mesh);
 
 }  // namespace bake
