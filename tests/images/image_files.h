@@ -5,38 +5,13 @@
 
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "cw2-bake/source_scene.h"
-
-/// An empty folder, removed at the end.
-class TemporaryFolder {
- public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "cw2-images-XXXXXX").string();
-        if (!mkdtemp(name.data())) {
-            throw std::runtime_error("no temporary folder");
-        }
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-    std::filesystem::path path_;
-};
-
-/// A texel's samples, each in [0, 1].
-using Paint = std::function<std::vector<double>(int x, int y)>;
+#include "tests/support/image.h"
+#include "tests/support/temporary_folder.h"
 
 inline void write_image(const std::filesystem::path& path, int width, int height, int channels,
                         const Paint& paint, OIIO::TypeDesc type = OIIO::TypeDesc::UINT8,
