@@ -8,7 +8,7 @@ set -f
 # files | what they may include besides the standard library and POSIX
 rules='
 mesh-format/*             | mesh-format/*
-cw2-bake/*                | mesh-format/* cw2-bake/* glm/* fmt/* tbb/* CLI/*
+cw2-bake/*                | mesh-format/* cw2-bake/* glm/* fmt/* tbb/* CLI/* meshoptimizer.h
 cw2-bake/image_reader.cpp | OpenImageIO/*
 cw2-bake/read_*.cpp       | fast_float/*
 cw2-bake/obj_parser.cpp   | fast_float/*
