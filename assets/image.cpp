@@ -1,0 +1,108 @@
+#include "assets/image.h"
+
+#include <png.h>
+
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace assets {
+namespace {
+
+/// 8-bit texels, top row first.
+struct Image {
+    int size;
+    int channels;
+    std::vector<png_byte> bytes;
+
+    Image(int size_, int channels_)
+        : size(size_),
+          channels(channels_),
+          bytes(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_ * channels_)) {}
+    /// The texel in column x of row y, counted from the bottom.
+    png_byte* at(int x, int y) {
+        return &bytes[(static_cast<std::size_t>(size - 1 - y) * static_cast<std::size_t>(size) +
+                       static_cast<std::size_t>(x)) *
+                      static_cast<std::size_t>(channels)];
+    }
+};
+
+png_byte to_byte(float value) {
+    return static_cast<png_byte>(saturate(value) * 255.0f + 0.5f);
+}
+
+/// IEC 61966-2-1.
+float srgb_from_linear(float value) {
+    return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
+}
+
+void write_png(const std::filesystem::path& path, Image& image) {
+    const auto close = [](std::FILE* file) { std::fclose(file); };
+    const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "wb"), close);
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    if (!file || !info || setjmp(png_jmpbuf(png))) {
+        png_destroy_write_struct(&png, &info);
+        throw std::runtime_error(path.string() + ": cannot be written");
+    }
+    png_init_io(png, file.get());
+    png_set_compression_level(png, 4);
+    png_set_filter(png, 0, PNG_FILTER_SUB | PNG_FILTER_UP);
+    const auto size = static_cast<png_uint_32>(image.size);
+    png_set_IHDR(png, info, size, size, 8,
+                 image.channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    for (int y = image.size - 1; y >= 0; --y) png_write_row(png, image.at(0, y));
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+}
+
+}  // namespace
+
+void write_texture_set(const std::filesystem::path& directory, const TextureSet& set) {
+    const int size = set.size;
+    Image color(size, 3);
+    Image roughness(size, 1);
+    Image metalness(size, 1);
+    Image normal(size, 3);
+    Image mask(size, 1);
+    std::vector<float> heights(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+    const auto height = [&](int x, int y) -> float& {
+        return heights[static_cast<std::size_t>(wrap(y, size)) * static_cast<std::size_t>(size) +
+                       static_cast<std::size_t>(wrap(x, size))];
+    };
+    for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+            const Texel texel = set.texel((glm::vec2(x, y) + 0.5f) / static_cast<float>(size));
+            for (int i = 0; i < 3; ++i) {
+                color.at(x, y)[i] = to_byte(srgb_from_linear(saturate(texel.color[i])));
+            }
+            *roughness.at(x, y) = to_byte(texel.roughness);
+            *metalness.at(x, y) = to_byte(texel.metalness);
+            *mask.at(x, y) = to_byte(texel.alpha);
+            height(x, y) = texel.height;
+        }
+    }
+    const glm::vec2 two_texels = 2.0f * set.extent / static_cast<float>(size);
+    for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+            const glm::vec2 slope = glm::vec2(height(x + 1, y) - height(x - 1, y),
+                                              height(x, y + 1) - height(x, y - 1)) /
+                                    two_texels;
+            const glm::vec3 n = glm::normalize(glm::vec3(-slope, 1.0f));
+            for (int i = 0; i < 3; ++i) normal.at(x, y)[i] = to_byte(0.5f * n[i] + 0.5f);
+        }
+    }
+    const auto write = [&](bool wanted, const char* suffix, Image& image) {
+        if (wanted) write_png(directory / (set.name + suffix), image);
+    };
+    write(set.color, "_color.png", color);
+    write(set.roughness, "_roughness.png", roughness);
+    write(set.metalness, "_metalness.png", metalness);
+    write(set.normal, "_normal.png", normal);
+    write(set.mask, "_mask.png", mask);
+}
+
+}  // namespace assets
