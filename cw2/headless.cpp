@@ -55,29 +55,13 @@ class OffscreenTarget {
                          .after = {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                    VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT}},
                         settings);
-        read_back();
+        read_back(commands_, image_.handle.get(), extent_, pixels_);
         submit_and_wait(device_, commands_);
     }
 
     std::span<const std::byte> pixels() const { return pixels_.mapped; }
 
  private:
-    void read_back() {
-        const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                     .imageExtent = {extent_.width, extent_.height, 1}};
-        vkCmdCopyImageToBuffer(commands_, image_.handle.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                               pixels_.handle.get(), 1, &copy);
-        const VkMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                                       .srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT,
-                                       .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                       .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT,
-                                       .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT};
-        const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                          .memoryBarrierCount = 1,
-                                          .pMemoryBarriers = &barrier};
-        vkCmdPipelineBarrier2(commands_, &dependency);
-    }
-
     const Device& device_;
     VkExtent2D extent_;
     Image image_;
@@ -124,11 +108,7 @@ void write_stats(const std::filesystem::path& path, const Device& device, const 
 
 void render_to_file(const Device& device, const Options& options) {
     const ImageKind kind = image_kind(*options.output);
-    const std::uint32_t largest = device.properties().limits.maxImageDimension2D;
-    if (options.width > largest || options.height > largest) {
-        throw VulkanError(fmt::format("--size: device '{}' renders at most {} pixels a side",
-                                      device.properties().deviceName, largest));
-    }
+    require_size(options, device);
     Timings timings;
     Clock::time_point start = Clock::now();
     const Layouts layouts(device);

@@ -4,6 +4,7 @@
 
 #include "cw2/device.h"
 #include "cw2/headless.h"
+#include "cw2/interactive.h"
 #include "cw2/options.h"
 
 namespace {
@@ -17,7 +18,7 @@ int run(const cw2::Options& options) {
         return 0;
     }
     if (!options.list_devices && !options.output) {
-        throw cw2::UsageError("--output is missing");
+        return cw2::run_window(options, CW2_SOURCE_DIR);
     }
 
     const cw2::Instance instance(options.validation, {});

@@ -179,6 +179,14 @@ FrameSettings frame_settings(const Options& options, const Bounds& bounds, float
     return settings;
 }
 
+void require_size(const Options& options, const Device& device) {
+    const std::uint32_t largest = device.properties().limits.maxImageDimension2D;
+    if (options.width > largest || options.height > largest) {
+        throw VulkanError(fmt::format("--size: device '{}' renders at most {} pixels a side",
+                                      device.properties().deviceName, largest));
+    }
+}
+
 float anisotropy(const Options& options, const Device& device) {
     // Measured on lavapipe: any anisotropy makes a frame three times as long.
     const auto wanted = static_cast<float>(options.anisotropy.value_or(device.is_cpu() ? 1u : 16u));

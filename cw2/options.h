@@ -52,6 +52,9 @@ std::optional<Options> parse_options(int argc, const char* const* argv);
 /// orbit. `aspect` is the picture's width / height.
 FrameSettings frame_settings(const Options& options, const Bounds& bounds, float aspect);
 
+/// Throws VulkanError where the device cannot render pictures of the size in the options.
+void require_size(const Options& options, const Device& device);
+
 /// The samplers' anisotropy on this device.
 float anisotropy(const Options& options, const Device& device);
 

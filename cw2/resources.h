@@ -61,6 +61,10 @@ struct ImageUse {
 void image_barrier(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect,
                    const ImageUse& before, const ImageUse& after);
 
+/// Copies level 0 of a colour image, in layout TRANSFER_SRC_OPTIMAL, to the start of `buffer`,
+/// tightly packed, for the host to read once the commands are done.
+void read_back(VkCommandBuffer commands, VkImage image, VkExtent2D extent, const Buffer& buffer);
+
 /// A pool whose command buffers are recorded anew each time.
 CommandPool make_command_pool(const Device& device);
 VkCommandBuffer allocate_commands(const Device& device, VkCommandPool pool);

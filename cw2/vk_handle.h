@@ -47,7 +47,7 @@ using CommandPool = DeviceHandle<VkCommandPool, vkDestroyCommandPool>;
 using Fence = DeviceHandle<VkFence, vkDestroyFence>;
 using Semaphore = DeviceHandle<VkSemaphore, vkDestroySemaphore>;
 using QueryPool = DeviceHandle<VkQueryPool, vkDestroyQueryPool>;
-using Swapchain = DeviceHandle<VkSwapchainKHR, vkDestroySwapchainKHR>;
+using SwapchainHandle = DeviceHandle<VkSwapchainKHR, vkDestroySwapchainKHR>;
 
 /// Owns what is destroyed by itself alone (instance, device).
 template <typename T, void(VKAPI_PTR* Destroy)(T, const VkAllocationCallbacks*)>

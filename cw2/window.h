@@ -1,0 +1,74 @@
+// The window and what a user does in it; window.cpp alone knows GLFW.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cw2/device.h"
+#include "cw2/input.h"
+#include "cw2/vk_handle.h"
+
+struct GLFWwindow;
+
+namespace cw2 {
+
+/// Why there is no window; what() is one line.
+class WindowError : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// The process's one window.
+class Window {
+ public:
+    /// A window that is hidden at first, of width x height pixels where the desktop lets it.
+    /// Throws WindowError, also where there is no display.
+    Window(const std::string& title, std::uint32_t width, std::uint32_t height);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    /// What an Instance needs for make_surface(). Throws WindowError where no Vulkan driver can
+    /// draw into a window.
+    std::vector<const char*> instance_extensions() const;
+    /// Throws VulkanError. `instance` must outlive the surface, and the surface must not outlive
+    /// this.
+    SurfaceHandle make_surface(const Instance& instance) const;
+
+    void show();
+    void set_title(const std::string& title);
+    /// Size in pixels; 0 x 0 while nothing of it is to be seen.
+    VkExtent2D extent() const;
+    /// Whether the user has closed it.
+    bool closed() const;
+
+    /// Gives what the user did since the last call; waits up to `seconds` for an event.
+    Input poll(double seconds);
+
+ private:
+    /// GLFW itself; destroyed after the window.
+    struct Library {
+        Library();
+        ~Library();
+        Library(const Library&) = delete;
+        Library& operator=(const Library&) = delete;
+    };
+
+    static Window& of(GLFWwindow* handle);
+    static void on_key(GLFWwindow* handle, int key, int scancode, int action, int modifiers);
+    static void on_button(GLFWwindow* handle, int button, int action, int modifiers);
+    static void on_cursor(GLFWwindow* handle, double x, double y);
+    static void on_refresh(GLFWwindow* handle);
+    bool held(int key) const;
+
+    Library library_;
+    GLFWwindow* handle_ = nullptr;
+    Input input_;  ///< collected by the callbacks
+    bool dragging_ = false;
+    glm::dvec2 cursor_{0.0};  ///< while dragging
+};
+
+}  // namespace cw2
