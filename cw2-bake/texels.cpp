@@ -173,11 +173,11 @@ TexelSource normal_texels(const Image& image) {
                         const float nx = 2.0f * to_float(row[r]) - 1.0f;
                         const float ny = 2.0f * to_float(row[g]) - 1.0f;
                         const float nz = 2.0f * to_float(row[b]) - 1.0f;
-                        const float length = std::sqrt(nx * nx + ny * ny + nz * nz);
-                        const float scale = length > 1e-6f ? 1.0f / length : 0.0f;
+                        const float square = nx * nx + ny * ny + nz * nz;
+                        const float scale = 1.0f / std::sqrt(std::max(square, 1e-12f));
                         texels[i] = nx * scale;
                         texels[i + 1] = ny * scale;
-                        texels[i + 2] = scale > 0.0f ? nz * scale : 1.0f;
+                        texels[i + 2] = nz * scale;
                     }
                 });
             }};
