@@ -283,8 +283,8 @@ std::vector<CornerMesh> small_meshes() {
 
 std::vector<CornerMesh> large_meshes() {
     return {
-        unconnected("20,000 triangles, unconnected", 11, 20'000),
-        lattice("100,000 triangles, lattice", 12, 100'000, 40, 0.25f),
+        unconnected("100,000 triangles, unconnected", 11, 100'000),
+        lattice("30,000 triangles, lattice", 12, 30'000, 16, 0.25f),
         pool("20,000 triangles, pool", 13, 20'000, 400, 64),
         fan("fan of 600, polar UVs", 600, 0.5f, true),
         fan("fan of 2,000, flat UVs", 2'000, 0.0f, false),

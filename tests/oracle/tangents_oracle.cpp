@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,20 +15,19 @@
 #include <stdexcept>
 
 #include "tests/oracle/corner_mesh.h"
+#include "tests/oracle/package.h"
 
 namespace {
 
 using oracle::CornerMesh;
-using Tangents = std::vector<glm::vec4>;
+using oracle::Tangents;
 
 struct Arguments {
     std::string mode;
     std::filesystem::path recorded;
     std::filesystem::path work_dir;
     std::filesystem::path obj;
-    std::string node;
-    std::string script;
-    std::filesystem::path package_dir;
+    oracle::Package package;
 };
 
 template <typename T>
@@ -43,32 +41,6 @@ void read(std::ifstream& file, T* values, std::size_t count) {
     if (!file.read(reinterpret_cast<char*>(values),
                    static_cast<std::streamsize>(count * sizeof(T))))
         throw std::runtime_error("the oracle's results end too early");
-}
-
-std::vector<Tangents> run_package(const Arguments& arguments,
-                                  const std::vector<CornerMesh>& meshes) {
-    const std::filesystem::path input = arguments.work_dir / "oracle_meshes.bin";
-    const std::filesystem::path output = arguments.work_dir / "oracle_tangents.bin";
-    std::ofstream file(input, std::ios::binary);
-    for (const CornerMesh& mesh : meshes) {
-        write(file, std::vector{static_cast<std::uint32_t>(mesh.positions.size())});
-        write(file, mesh.positions);
-        write(file, mesh.normals);
-        write(file, mesh.uvs);
-    }
-    file.close();
-    const std::string command = '"' + arguments.node + "\" \"" + arguments.script + "\" \"" +
-                                arguments.package_dir.string() + "\" \"" + input.string() +
-                                "\" \"" + output.string() + "\" > \"" +
-                                (arguments.work_dir / "oracle_times.txt").string() + '"';
-    if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
-    std::ifstream results(output, std::ios::binary);
-    std::vector<Tangents> tangents;
-    for (const CornerMesh& mesh : meshes) {
-        tangents.emplace_back(mesh.positions.size());
-        read(results, tangents.back().data(), tangents.back().size());
-    }
-    return tangents;
 }
 
 /// FNV-1a over the bits of the mesh, so that a recorded result is never held against another mesh.
@@ -87,7 +59,8 @@ std::uint64_t fingerprint(const CornerMesh& mesh) {
 
 void record(const Arguments& arguments) {
     const std::vector<CornerMesh> meshes = oracle::small_meshes();
-    const std::vector<Tangents> tangents = run_package(arguments, meshes);
+    const std::vector<Tangents> tangents =
+        oracle::run_package(arguments.package, meshes, arguments.work_dir).tangents;
     std::ofstream file(arguments.recorded, std::ios::binary);
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         write(file, std::vector{fingerprint(meshes[i])});
@@ -178,7 +151,7 @@ int compare(const CornerMesh& mesh, const Tangents& theirs) {
 int compare_all(const Arguments& arguments) {
     std::vector<CornerMesh> meshes = oracle::small_meshes();
     std::vector<Tangents> tangents;
-    if (std::filesystem::exists(arguments.package_dir / "node_modules" / "mikktspace")) {
+    if (std::filesystem::exists(arguments.package.dir / "node_modules" / "mikktspace")) {
         std::printf("oracle: the npm package mikktspace, live\n");
         std::ranges::move(oracle::large_meshes(), std::back_inserter(meshes));
         if (std::filesystem::exists(arguments.obj))
@@ -186,7 +159,7 @@ int compare_all(const Arguments& arguments) {
                               std::back_inserter(meshes));
         else
             std::printf("skipped: no %s\n", arguments.obj.c_str());
-        tangents = run_package(arguments, meshes);
+        tangents = oracle::run_package(arguments.package, meshes, arguments.work_dir).tangents;
     } else {
         std::printf("oracle: the results recorded in %s\n", arguments.recorded.c_str());
         tangents = read_recorded(arguments, meshes);
@@ -202,12 +175,8 @@ int compare_all(const Arguments& arguments) {
 int main(int count, char** values) {
     try {
         if (count != 5 && count != 8) throw std::runtime_error("wrong arguments");
-        Arguments arguments{values[1], values[2], values[3], values[4], {}, {}, {}};
-        if (count == 8) {
-            arguments.node = values[5];
-            arguments.script = values[6];
-            arguments.package_dir = values[7];
-        }
+        Arguments arguments{values[1], values[2], values[3], values[4], {}};
+        if (count == 8) arguments.package = {values[5], values[6], values[7]};
         if (arguments.mode == "compare") return compare_all(arguments);
         if (arguments.mode != "record") throw std::runtime_error("wrong arguments");
         record(arguments);
