@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "cw2-bake/chunks.h"
+#include "cw2-bake/compress.h"
 #include "cw2-bake/framed_mesh.h"
 #include "cw2-bake/normals.h"
 #include "cw2-bake/progress.h"
@@ -147,15 +148,22 @@ std::string bake(const Settings& settings, const Warn& warn) {
         quantise(meshes, uv_budgets(textures), {settings.frame_form, settings.position_form});
     const Tables tables = make_tables(scene.materials, textures);
 
-    const mesh_format::Document document{.scene = geometry.scene,
-                                         .meshes = geometry.meshes,
-                                         .chunks = geometry.chunks,
-                                         .materials = tables.materials,
-                                         .textures = tables.textures,
-                                         .strings = tables.strings,
-                                         .vertices = geometry.vertices,
-                                         .indices = geometry.indices,
-                                         .texels = tables.texels};
+    mesh_format::Document document{.scene = geometry.scene,
+                                   .meshes = geometry.meshes,
+                                   .chunks = geometry.chunks,
+                                   .materials = tables.materials,
+                                   .textures = tables.textures,
+                                   .strings = tables.strings,
+                                   .texels = tables.texels};
+    EncodedGeometry encoded;
+    if (settings.compress) {
+        encoded = compress(geometry);
+        document.encoded_vertices = encoded.vertices;
+        document.encoded_indices = encoded.indices;
+    } else {
+        document.vertices = geometry.vertices;
+        document.indices = geometry.indices;
+    }
     const std::uint64_t bytes = mesh_format::write(document, settings.output);
     return fmt::format("{}\n{}", settings.output.string(), summary(document, bytes));
 }

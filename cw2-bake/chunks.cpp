@@ -16,6 +16,8 @@ namespace bake {
 
 namespace {
 
+using mesh_format::kMaxChunkTriangles;
+
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 // Below this many triangles a task of its own costs more than it saves.
 constexpr std::size_t kParallelSplit = 16'384;

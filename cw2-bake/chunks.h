@@ -21,12 +21,9 @@ struct ChunkedMesh {
     std::vector<Chunk> chunks;
 };
 
-/// The largest number of triangles in a chunk.
-inline constexpr std::uint32_t kMaxChunkTriangles = 512;
-
 /// Cuts `mesh` by halving its triangles at the median of their longest side until at most
-/// kMaxChunkTriangles are left, then orders each chunk's triangles for the vertex cache and
-/// against overdraw. Neighbouring chunks share a mesh as long as its vertices allow.
+/// mesh_format::kMaxChunkTriangles are left, then orders each chunk's triangles for the vertex
+/// cache and against overdraw. Neighbouring chunks share a mesh as long as its vertices allow.
 std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh);
 
 }  // namespace bake

@@ -285,6 +285,8 @@ void finish_scene(PackedGeometry& geometry, std::span<const ChunkedMesh> meshes,
     }
     // The error is added so that the decoded vertices, too, lie within.
     geometry.scene.radius = static_cast<float>(std::sqrt(square_radius) + all.position);
+    geometry.scene.vertex_bytes = geometry.vertices.size();
+    geometry.scene.index_count = geometry.indices.size();
     geometry.scene.position_error = static_cast<float>(all.position);
     geometry.scene.frame_error_mean = static_cast<float>(all.frame_sum / vertices);
     geometry.scene.frame_error_max = static_cast<float>(all.frame_max);

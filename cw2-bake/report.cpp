@@ -53,6 +53,8 @@ struct Counts {
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;
     std::size_t masked_materials = 0;
+    std::uint64_t vertex_bytes = 0;  ///< as stored
+    std::uint64_t index_bytes = 0;
     float extent = 0.0f;  ///< longest side of the bounding box
 };
 
@@ -65,6 +67,8 @@ Counts count(const Document& document) {
     for (const MaterialRecord& material : document.materials) {
         if (material.flags & mesh_format::kAlphaMask) ++counts.masked_materials;
     }
+    counts.vertex_bytes = document.vertices.size() + document.encoded_vertices.size();
+    counts.index_bytes = document.indices.size_bytes() + document.encoded_indices.size();
     for (int axis = 0; axis < 3; ++axis) {
         counts.extent = std::max(counts.extent,
                                  document.scene.bounds_max[axis] - document.scene.bounds_min[axis]);
@@ -168,7 +172,7 @@ std::string json_array(const Records& records, Format format) {
 std::string summary(const Document& document, std::uint64_t file_bytes) {
     const Counts counts = count(document);
     const std::uint64_t data_bytes =
-        document.vertices.size() + document.indices.size_bytes() + document.texels.size();
+        counts.vertex_bytes + counts.index_bytes + document.texels.size();
     return fmt::format(
         "  {} vertices, {} triangles, {} meshes of {} chunks, {} materials ({} alpha-masked), {} "
         "textures\n"
@@ -176,8 +180,8 @@ std::string summary(const Document& document, std::uint64_t file_bytes) {
         "  largest errors: position {}; frame {:.4f} degrees (mean {:.4f}); UV {:.3f} texel\n",
         grouped(counts.vertices), grouped(counts.triangles), document.meshes.size(),
         document.chunks.size(), document.materials.size(), counts.masked_materials,
-        document.textures.size(), grouped(file_bytes), grouped(document.vertices.size()),
-        grouped(document.indices.size_bytes()), grouped(document.texels.size()),
+        document.textures.size(), grouped(file_bytes), grouped(counts.vertex_bytes),
+        grouped(counts.index_bytes), grouped(document.texels.size()),
         grouped(file_bytes - data_bytes), position_error(document, counts),
         document.scene.frame_error_max, document.scene.frame_error_mean, document.scene.uv_error);
 }
@@ -233,7 +237,7 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
         "  \"radius\": {},\n  \"position_error\": {},\n  \"frame_error_mean_degrees\": {},\n"
         "  \"frame_error_max_degrees\": {},\n  \"uv_error_texels\": {},\n  \"meshes\": {},\n"
         "  \"materials\": {},\n  \"textures\": {}\n}}\n",
-        mesh_format::kVersion, file_bytes, document.vertices.size(), document.indices.size_bytes(),
+        mesh_format::kVersion, file_bytes, counts.vertex_bytes, counts.index_bytes,
         document.texels.size(), counts.vertices, counts.triangles, scene.bounds_min[0],
         scene.bounds_min[1], scene.bounds_min[2], scene.bounds_max[0], scene.bounds_max[1],
         scene.bounds_max[2], scene.radius, scene.position_error, scene.frame_error_mean,

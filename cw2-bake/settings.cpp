@@ -57,6 +57,8 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     add_choice<TextureMode>(app, "--textures", settings.textures,
                             {{"lossless", TextureMode::lossless}, {"none", TextureMode::none}},
                             "how textures are stored [lossless]");
+    app.add_flag("--compress", settings.compress,
+                 "store vertices and indices in fewer bytes, without loss");
     app.add_option("--threads", settings.threads, "threads to use [one a processor]")
         ->check(CLI::Range(1, 1024))
         ->type_name("N");

@@ -6,6 +6,8 @@
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "cw2/decode.h"
+
 namespace cw2 {
 
 namespace {
@@ -261,7 +263,17 @@ Scene load_scene(const Device& device, const Layouts& layouts, const std::filesy
         throw mesh_format::FileError(fmt::format(
             "{0}: is a source file; bake it first: cw2-bake '{0}' -o '{1}'", path.string(), baked));
     }
-    return {device, layouts, mesh_format::parse(file.bytes(), path.string()), anisotropy};
+    Document document = mesh_format::parse(file.bytes(), path.string());
+    DecodedGeometry decoded;
+    if (document.is_encoded()) {
+        decoded = decode(document, path.string());
+        document.vertices = decoded.vertices;
+        document.indices = decoded.indices;
+        document.encoded_vertices = {};
+        document.encoded_indices = {};
+        mesh_format::check(document, path.string());
+    }
+    return {device, layouts, document, anisotropy};
 }
 
 }  // namespace cw2

@@ -73,6 +73,11 @@ void check_scene(const Checker& check, const SceneRecord& scene) {
                   "the scene's position step is no power of two");
 }
 
+std::uint64_t vertex_bytes(const MeshRecord& mesh) {
+    const VertexLayout layout = vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+    return std::uint64_t{mesh.vertex_count} * layout.stride;
+}
+
 void check_mesh(const Checker& check, const Document& document, std::size_t i) {
     const MeshRecord& mesh = document.meshes[i];
     const auto require = [&](bool condition, const char* what) {
@@ -85,18 +90,11 @@ void check_mesh(const Checker& check, const Document& document, std::size_t i) {
     require(mesh.vertex_count > 0 && mesh.vertex_count <= kMaxMeshVertices,
             "vertex count out of range");
     require(mesh.index_count > 0 && mesh.index_count % 3 == 0, "index count is no multiple of 3");
-    const std::uint64_t stride =
-        vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
     require(mesh.vertex_offset % 4 == 0 &&
-                in_range(mesh.vertex_offset, mesh.vertex_count * stride, document.vertices.size()),
+                in_range(mesh.vertex_offset, vertex_bytes(mesh), document.scene.vertex_bytes),
             "its vertices lie outside the vertex section");
-    require(in_range(mesh.first_index, mesh.index_count, document.indices.size()),
+    require(in_range(mesh.first_index, mesh.index_count, document.scene.index_count),
             "its indices lie outside the index section");
-    std::uint16_t largest = 0;
-    for (const std::uint16_t index : document.indices.subspan(mesh.first_index, mesh.index_count)) {
-        largest = std::max(largest, index);
-    }
-    require(largest < mesh.vertex_count, "an index is out of range");
     for (const std::int32_t origin : mesh.origin) {
         require(origin > -(1 << 24) && origin < (1 << 24) - 65'535, "its origin is out of range");
     }
@@ -106,6 +104,15 @@ void check_mesh(const Checker& check, const Document& document, std::size_t i) {
     require(ordered(mesh.bounds_min, mesh.bounds_max), "its bounding box is invalid");
 }
 
+void check_indices(const Checker& check, const Document& document, std::size_t i) {
+    const MeshRecord& mesh = document.meshes[i];
+    std::uint16_t largest = 0;
+    for (const std::uint16_t index : document.indices.subspan(mesh.first_index, mesh.index_count)) {
+        largest = std::max(largest, index);
+    }
+    check.require(largest < mesh.vertex_count, "mesh", i, "an index is out of range");
+}
+
 /// The mesh's chunks: one after the other they hold all its indices.
 void check_chunks(const Checker& check, const Document& document, std::size_t i) {
     const MeshRecord& mesh = document.meshes[i];
@@ -113,9 +120,9 @@ void check_chunks(const Checker& check, const Document& document, std::size_t i)
                   "its chunks lie outside the chunk section");
     std::uint64_t next_index = 0;
     for (const ChunkRecord& chunk : document.chunks.subspan(mesh.first_chunk, mesh.chunk_count)) {
-        check.require(
-            chunk.first_index == next_index && chunk.index_count > 0 && chunk.index_count % 3 == 0,
-            "mesh", i, "its chunks do not follow each other");
+        check.require(chunk.first_index == next_index && chunk.index_count > 0 &&
+                          chunk.index_count % 3 == 0 && chunk.index_count <= 3 * kMaxChunkTriangles,
+                      "mesh", i, "its chunks do not follow each other");
         check.require(all_finite(chunk.center) && std::isfinite(chunk.radius) &&
                           all_finite(chunk.cone_axis) && std::isfinite(chunk.cone_cutoff),
                       "mesh", i, "a chunk's bounds are not finite");
@@ -167,15 +174,33 @@ void check_texture(const Checker& check, const Document& document, std::size_t i
             "its texels lie outside the texel section");
 }
 
-void check_document(const Checker& check, const Document& document) {
-    check_scene(check, document.scene);
-    check.require(!document.meshes.empty(), "holds no mesh");
+/// An encoded section starts with the size of each mesh's part.
+void check_encoded(const Checker& check, const Document& document,
+                   std::span<const std::byte> encoded, const char* what) {
+    std::uint64_t end = document.meshes.size() * sizeof(std::uint32_t);
+    check.require(end <= encoded.size(), what);
     for (std::size_t i = 0; i < document.meshes.size(); ++i) {
-        check_mesh(check, document, i);
-        check_chunks(check, document, i);
+        std::uint32_t size = 0;
+        std::memcpy(&size, encoded.data() + i * sizeof size, sizeof size);
+        end += size;
     }
-    for (std::size_t i = 0; i < document.materials.size(); ++i) check_material(check, document, i);
-    for (std::size_t i = 0; i < document.textures.size(); ++i) check_texture(check, document, i);
+    check.require(end == encoded.size(), what);
+}
+
+void check_geometry_sizes(const Checker& check, const Document& document) {
+    if (document.is_encoded()) {
+        check.require(document.vertices.empty() && document.indices.empty(),
+                      "holds geometry both encoded and decoded");
+        check_encoded(check, document, document.encoded_vertices,
+                      "the encoded vertices do not fit the meshes");
+        check_encoded(check, document, document.encoded_indices,
+                      "the encoded indices do not fit the meshes");
+    } else {
+        check.require(document.encoded_indices.empty(), "holds encoded indices alone");
+        check.require(document.vertices.size() == document.scene.vertex_bytes &&
+                          document.indices.size() == document.scene.index_count,
+                      "the scene's sizes do not fit its sections");
+    }
 }
 
 std::uint64_t header_checksum(Header header) {
@@ -276,14 +301,37 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
     return result;
 }
 
+void check(const Document& document, std::string_view name) {
+    const Checker checker(name);
+    check_scene(checker, document.scene);
+    checker.require(!document.meshes.empty(), "holds no mesh");
+    check_geometry_sizes(checker, document);
+    std::uint64_t vertex_end = 0;
+    std::uint64_t index_end = 0;
+    for (std::size_t i = 0; i < document.meshes.size(); ++i) {
+        check_mesh(checker, document, i);
+        const MeshRecord& mesh = document.meshes[i];
+        checker.require(mesh.vertex_offset >= vertex_end && mesh.first_index >= index_end, "mesh",
+                        i, "it overlaps the mesh before it");
+        vertex_end = mesh.vertex_offset + vertex_bytes(mesh);
+        index_end = mesh.first_index + mesh.index_count;
+        check_chunks(checker, document, i);
+        if (!document.is_encoded()) check_indices(checker, document, i);
+    }
+    for (std::size_t i = 0; i < document.materials.size(); ++i) {
+        check_material(checker, document, i);
+    }
+    for (std::size_t i = 0; i < document.textures.size(); ++i) check_texture(checker, document, i);
+}
+
 Document parse(std::span<const std::byte> bytes, std::string_view name) {
     assert(reinterpret_cast<std::uintptr_t>(bytes.data()) % 16 == 0);
-    const Checker check(name);
-    const Header header = checked_header(check, bytes);
-    const SectionReader sections(check, bytes, header);
+    const Checker checker(name);
+    const Header header = checked_header(checker, bytes);
+    const SectionReader sections(checker, bytes, header);
 
     const auto scenes = sections.records<SceneRecord>(SectionKind::scene);
-    check.require(scenes.size() == 1, "section scene does not hold one record");
+    checker.require(scenes.size() == 1, "section scene does not hold one record");
     Document document;
     document.scene = scenes.front();
     document.meshes = sections.records<MeshRecord>(SectionKind::meshes);
@@ -295,12 +343,14 @@ Document parse(std::span<const std::byte> bytes, std::string_view name) {
     document.vertices = sections.bytes(SectionKind::vertices);
     document.indices = sections.records<std::uint16_t>(SectionKind::indices);
     document.texels = sections.bytes(SectionKind::texels);
-    check_document(check, document);
+    document.encoded_vertices = sections.bytes(SectionKind::encoded_vertices);
+    document.encoded_indices = sections.bytes(SectionKind::encoded_indices);
+    check(document, name);
     return document;
 }
 
 std::uint64_t write(const Document& document, const std::filesystem::path& path) {
-    check_document(Checker(path.string()), document);
+    check(document, path.string());
 
     const std::array<std::span<const std::byte>, kSectionCount> contents{
         as_bytes(&document.scene, 1),
@@ -312,6 +362,8 @@ std::uint64_t write(const Document& document, const std::filesystem::path& path)
         document.vertices,
         std::as_bytes(document.indices),
         document.texels,
+        document.encoded_vertices,
+        document.encoded_indices,
     };
     Header header{};
     header.magic = kMagic;

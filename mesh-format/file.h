@@ -21,18 +21,28 @@ struct Document {
     std::span<const std::byte> vertices;
     std::span<const std::uint16_t> indices;
     std::span<const std::byte> texels;
+    /// Of a compressed file; then vertices and indices are empty until somebody decodes these.
+    std::span<const std::byte> encoded_vertices;
+    std::span<const std::byte> encoded_indices;
+
+    bool is_encoded() const { return !encoded_vertices.empty(); }
 
     /// The text that `ref` names.
     std::string_view text(StringRef ref) const { return strings.substr(ref.offset, ref.length); }
 };
 
+/// Throws FileError, which calls the document `name`, unless everything in it is in order: every
+/// offset, every index, every number finite where the renderer needs it. The indices of an encoded
+/// document can only be checked once they are decoded.
+void check(const Document& document, std::string_view name);
+
 /// Checks `bytes` completely and returns the document in it: magic, version, sizes, checksums,
-/// every offset, every index, every number finite where the renderer needs it. `bytes` starts at
+/// and what check() asks. `bytes` starts at
 /// a multiple of 16 and must outlive the document; `name` is used in messages.
 /// Throws FileError; never reads outside `bytes`, allocates nothing that grows with the input.
 Document parse(std::span<const std::byte> bytes, std::string_view name);
 
-/// Throws FileError unless `document` satisfies what parse() checks, then writes it beside `path`
+/// Throws FileError unless `document` passes check(), then writes it beside `path`
 /// and renames it, so that `path` holds either its old contents or the whole new file. The same
 /// document gives the same bytes. Returns the file's size in bytes.
 std::uint64_t write(const Document& document, const std::filesystem::path& path);

@@ -12,6 +12,11 @@
 //   vertices   packed vertices of all meshes, mesh after mesh
 //   indices    uint16[], triangle lists; an index counts from its mesh's first vertex
 //   texels     the mip chains of all textures, texture after texture
+//   encoded vertices, encoded indices
+//              in a compressed file, what becomes the sections vertices and indices, which are
+//              then empty: uint32[], the stored size of each mesh's part, then those parts. A part
+//              is a Zstandard frame around a stream of meshoptimizer's vertex codec (vertices
+//              zero-padded to a multiple of 4 bytes) or index codec.
 #pragma once
 
 #include <array>
@@ -29,6 +34,8 @@ inline constexpr std::uint32_t kVersion = 1;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 /// A mesh's vertices are addressed by 16-bit indices.
 inline constexpr std::uint32_t kMaxMeshVertices = 65'536;
+/// The largest number of triangles in a chunk.
+inline constexpr std::uint32_t kMaxChunkTriangles = 512;
 inline constexpr std::uint32_t kNoTexture = 0xFFFF'FFFF;
 
 enum class SectionKind : std::uint32_t {
@@ -41,6 +48,8 @@ enum class SectionKind : std::uint32_t {
     vertices,
     indices,
     texels,
+    encoded_vertices,
+    encoded_indices,
     count
 };
 inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(SectionKind::count);
@@ -88,7 +97,9 @@ enum class UvForm : std::uint8_t {
 };
 
 struct SceneRecord {
-    float bounds_min[3];  ///< bounding box of all positions as decoded, scene units
+    std::uint64_t vertex_bytes;  ///< size of the section vertices, decoded
+    std::uint64_t index_count;   ///< of the section indices, decoded
+    float bounds_min[3];         ///< bounding box of all positions as decoded, scene units
     float bounds_max[3];
     float radius;          ///< largest distance of a vertex from the box's centre, scene units
     float position_step;   ///< lattice step, a power of two, scene units; 0 if no mesh is quantised
@@ -122,7 +133,7 @@ struct MeshRecord {
 /// Triangles of a mesh that lie close together: what is culled and drawn as one.
 struct ChunkRecord {
     std::uint32_t first_index;  ///< counted from the mesh's first, a multiple of 3
-    std::uint32_t index_count;  ///< a positive multiple of 3
+    std::uint32_t index_count;  ///< a positive multiple of 3, at most 3 kMaxChunkTriangles
     float center[3];            ///< of a sphere around the decoded positions, scene units
     float radius;
     /// A camera at c sees only back faces if
@@ -179,7 +190,7 @@ inline constexpr std::uint64_t kMipAlignment = 16;
 inline constexpr std::uint32_t kMaxTextureSize = 16'384;
 
 static_assert(sizeof(Section) == 24 && sizeof(Header) == 32 + 24 * kSectionCount);
-static_assert(sizeof(SceneRecord) == 48 && sizeof(MeshRecord) == 96);
+static_assert(sizeof(SceneRecord) == 64 && sizeof(MeshRecord) == 96);
 static_assert(sizeof(ChunkRecord) == 40);
 static_assert(sizeof(MaterialRecord) == 56 && sizeof(TextureRecord) == 48);
 static_assert(std::is_trivially_copyable_v<Header> && std::is_trivially_copyable_v<MeshRecord>);

@@ -81,7 +81,7 @@ TEST(Chunks, StayWithinTheLimitsAndFollowEachOther) {
         std::uint32_t next = 0;
         for (const bake::Chunk& chunk : piece.chunks) {
             EXPECT_EQ(chunk.first_index, next);
-            EXPECT_LE(chunk.index_count, 3 * bake::kMaxChunkTriangles);
+            EXPECT_LE(chunk.index_count, 3 * mesh_format::kMaxChunkTriangles);
             EXPECT_GT(chunk.index_count, 0u);
             next += chunk.index_count;
         }
