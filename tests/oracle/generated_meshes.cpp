@@ -96,13 +96,14 @@ CornerMesh sphere(const char* name, int columns, int rows, bool one_pole) {
 }
 
 /// A fan of `count` faces about one vertex. Polar UVs have the hub's at one point, so that the
-/// faces' directions of u point all the way round.
-CornerMesh fan(const char* name, int count, float height, bool polar) {
+/// faces' directions of u point all the way round. Every second rim vertex is late by `late` steps.
+CornerMesh fan(const char* name, int count, float height, bool polar, double late = 0.0) {
     CornerMesh mesh{.name = name, .positions = {}, .normals = {}, .uvs = {}};
     const vec3 up(0.0f, 0.0f, 1.0f);
     const Vertex hub{vec3(0.0f, 0.0f, height), up, polar ? vec2(0.5f, 1.0f) : vec2(0.0f)};
     const auto rim = [&](int i) {
-        const vec3 p(cosine(double(i % count) / count), sine(double(i % count) / count), 0.0f);
+        const double turns = (i % count + (i % 2 == 0 ? 0.0 : late)) / count;
+        const vec3 p(cosine(turns), sine(turns), 0.0f);
         return Vertex{p, height == 0.0f ? up : glm::normalize(p + up),
                       polar ? vec2(float(i) / count, 0.0f) : vec2(p)};
     };
@@ -254,6 +255,10 @@ std::vector<CornerMesh> small_meshes() {
         lattice("lattice", 3, 500, 3, 0.0f),
         unconnected("unconnected", 4, 120),
     };
+    const CornerMesh uneven = fan("disc, polar UVs, uneven", 40, 0.0f, true, 0.4);
+    meshes.push_back(uneven);
+    meshes.push_back(changed(uneven, "disc, polar UVs turned, uneven",
+                             [](std::size_t, auto&, auto&, vec2& uv) { uv = vec2(uv.y, -uv.x); }));
     meshes.push_back(
         changed(hills, "UVs differ at shared points", [](std::size_t c, auto&, auto&, vec2& uv) {
             if (c / 18 % 3 == 0) uv = vec2(uv.y + 3.0f, -uv.x);
