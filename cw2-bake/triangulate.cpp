@@ -121,9 +121,15 @@ bool Triangulator::blocks(std::uint32_t q, const Triangle& ear, Rule rule) const
            (from_ab > 0 && from_bc == 0 && to_ab == 0 && to_bc > 0);
 }
 
+/// A corner that repeats the one before it, or the tip of a spike.
+bool Triangulator::is_idle(std::uint32_t v) const {
+    const glm::dvec2& a = points_[previous_[v]];
+    return points_[v] == a || points_[next_[v]] == a;
+}
+
 bool Triangulator::may_clip(std::uint32_t v, Rule rule) const {
     const Triangle ear{previous_[v], v, next_[v]};
-    if (rule == Rule::any) return true;
+    if (rule == Rule::any || is_idle(v)) return true;
     const double area = turn(ear[0], ear[1], ear[2]);
     if (rule == Rule::without_area) return area == 0;
     if (area <= 0) return false;
@@ -163,17 +169,8 @@ void Triangulator::clip_ears() {
     }
     build_grid();
 
-    Rule rule = Rule::ear;
-    std::uint32_t v = 0, refused = 0;
-    for (std::uint32_t left = count; left > 3;) {
-        if (!may_clip(v, rule)) {
-            v = next_[v];
-            if (++refused >= left) {
-                refused = 0;
-                rule = static_cast<Rule>(static_cast<int>(rule) + 1);
-            }
-            continue;
-        }
+    std::uint32_t left = count, v = 0;
+    const auto clip = [&] {
         const std::uint32_t a = previous_[v], c = next_[v];
         triangles_.push_back({a, v, c});
         next_[a] = c;
@@ -183,10 +180,31 @@ void Triangulator::clip_ears() {
             may_block_[end] = may_block_[end] && turn(previous_[end], end, next_[end]) <= 0;
         }
         --left;
-        refused = 0;
-        // An outline that needed a later rule is no polygon: nothing to gain from the strict one.
-        if (rule == Rule::without_area) rule = Rule::ear;
-        v = next_[c];  // taking every other corner makes fewer slivers
+    };
+    for (std::uint32_t passed = 0; passed < count && left > 3;) {
+        if (is_idle(v)) {
+            clip();
+            v = previous_[v];
+        } else {
+            v = next_[v];
+            ++passed;
+        }
+    }
+
+    Rule rule = Rule::ear;
+    for (std::uint32_t refused = 0; left > 3;) {
+        if (may_clip(v, rule)) {
+            clip();
+            refused = 0;
+            // An outline that needed a later rule is no polygon: the strict one gains nothing.
+            if (rule == Rule::without_area) rule = Rule::ear;
+            v = next_[next_[v]];  // taking every other corner makes fewer slivers
+        } else {
+            v = next_[v];
+            if (++refused < left) continue;
+            refused = 0;
+            rule = static_cast<Rule>(static_cast<int>(rule) + 1);
+        }
     }
     triangles_.push_back({previous_[v], v, next_[v]});
 }

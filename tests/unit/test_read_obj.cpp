@@ -112,6 +112,34 @@ TEST(ReadObj, CountsAZeroNormalAsMissing) {
     EXPECT_EQ(scene.smoothing_group, std::vector<std::uint32_t>{3});
 }
 
+// The letter U, of area 7, whose fan about its first corner would cross its opening.
+TEST(ReadObj, CutsConcavePolygonsAndKeepsTheirCornersTogether) {
+    const std::string outline[] = {"0 3", "0 0", "3 0", "3 3", "2 3", "2 1", "1 1", "1 3"};
+    std::string vertices, face = "f";
+    for (int i = 1; i <= 8; ++i) {
+        vertices += "v " + outline[i - 1] + " 0\nvt " + outline[i - 1] + "\n";
+        face += " " + std::to_string(i) + "/" + std::to_string(i);
+    }
+    for (const std::string& text :
+         {vertices + face + "\n", face + "\nusemtl b\n" + face + "\n" + vertices}) {
+        const auto scene = read(text).scene;
+        double area = 0;
+        for (std::size_t t = 0; t < scene.corners.size(); t += 3) {
+            glm::vec3 p[3];
+            for (int i = 0; i < 3; ++i) {
+                const bake::Corner& corner = scene.corners[t + i];
+                p[i] = scene.positions[corner.position];
+                EXPECT_EQ(scene.uvs[corner.uv], glm::vec2(p[i]));
+            }
+            const glm::vec3 u = p[1] - p[0], v = p[2] - p[0];
+            EXPECT_GT(u.x * v.y - u.y * v.x, 0);
+            area += (u.x * v.y - u.y * v.x) / 2;
+        }
+        EXPECT_EQ(area, 7.0 * static_cast<double>(scene.materials.size()));
+        EXPECT_EQ(scene.corners.size(), 18 * scene.materials.size());
+    }
+}
+
 TEST(ReadObj, OrdersMaterialsByFirstUseAndDropsUnused) {
     const auto scene = read(kSquare +
                             "usemtl x\nusemtl c\nf 1 2 3\nusemtl a\nf 1 2 3\n"

@@ -209,13 +209,22 @@ TEST(Triangulate, TilesOutlinesThatTouchThemselves) {
     }
 }
 
-TEST(Triangulate, TilesOutlinesThatRepeatCorners) {
+TEST(Triangulate, TilesOutlinesWithRepeatedCornersAndSpikes) {
     Random random(4);
-    for (int i = 0; i < 300; ++i) {
-        Polygon polygon = star(random, 3 + i % 20);
-        for (int repeats = pick(random, 1, 4); repeats > 0; --repeats) {
+    for (int i = 0; i < 400; ++i) {
+        Polygon polygon =
+            i % 2 ? star(random, 3 + i % 20) : with_collinear(comb(random, 1 + i % 10));
+        for (int changes = pick(random, 1, 4); changes > 0; --changes) {
             const auto at = polygon.begin() + pick(random, 0, static_cast<int>(polygon.size()) - 1);
-            polygon.insert(at, *at);
+            const glm::vec3 corner = *at;
+            // A spike ends half way to the corner before it, inside its edge.
+            const glm::vec3 tip =
+                (corner + *(at == polygon.begin() ? polygon.end() - 1 : at - 1)) / 2.0f;
+            if (pick(random, 0, 1)) {
+                polygon.insert(at, corner);
+            } else {
+                polygon.insert(at, {corner, tip});
+            }
         }
         expect_tiling(polygon, kUp, 1e-9);
         if (HasFatalFailure()) FAIL() << i;
