@@ -29,7 +29,8 @@ timed() {
 
 third_party/install_packages.sh
 cmake --preset release >/dev/null
-cmake --build --preset release --target cw2 cw2-bake demo-scene -- --quiet
+[[ -t 1 ]] && quiet=() || quiet=(-- --quiet)
+cmake --build --preset release --target cw2 cw2-bake demo-scene "${quiet[@]}"
 
 mkdir -p build/demo
 if [[ ! $scene -nt $model || ! $scene -nt $bake ]]; then

@@ -6,5 +6,6 @@ cd "$(dirname "$0")"
 
 third_party/install_packages.sh
 cmake --preset release >/dev/null
-cmake --build --preset release -- --quiet
+[[ -t 1 ]] && quiet=() || quiet=(-- --quiet)
+cmake --build --preset release "${quiet[@]}"
 ctest --preset release -j2 "$@"

@@ -54,6 +54,6 @@ apt_get() {
     }
 }
 
-echo "installing ${#missing[@]} packages and what they depend on: ${missing[*]}"
+echo "installing, with what they depend on: ${missing[*]}"
 apt_get update
 apt_get install -y --no-install-recommends "${missing[@]}"
