@@ -7,16 +7,19 @@ set -f
 
 # files | what they may include besides the standard library and POSIX
 rules='
-mesh-format/*             | mesh-format/*
-cw2-bake/*                | mesh-format/* cw2-bake/* glm/* fmt/* tbb/* CLI/* meshoptimizer.h
-cw2-bake/image_reader.cpp | OpenImageIO/*
-cw2-bake/read_*.cpp       | fast_float/*
-cw2-bake/obj_parser.cpp   | fast_float/*
-cw2/*                     | mesh-format/* cw2/* shaders/interop.h *.vert.h *.frag.h
-cw2/*                     | vulkan/* glm/* fmt/* tbb/* CLI/* glslang/* SPIRV/* png.h Imf*.h
-cw2/window*               | GLFW/*
-shaders/*                 | mesh-format/* shaders/*
-shaders/interop.h         | glm/*
+mesh-format/*           | mesh-format/*
+cw2-bake/*              | mesh-format/* cw2-bake/* glm/* fmt/* tbb/* CLI/*
+cw2-bake/*              | meshoptimizer.h zstd.h xxhash.h
+cw2-bake/read_*.cpp     | fast_float/* tiny_gltf.h
+cw2-bake/obj_parser.cpp | fast_float/*
+cw2-bake/image_reader.* | OpenImageIO/*
+cw2/*                   | mesh-format/* cw2/* shaders/interop.h *.vert.h *.frag.h glm/* fmt/*
+cw2/*                   | tbb/* CLI/* vulkan/* glslang/* SPIRV/* png.h Imf*.h
+cw2/*                   | meshoptimizer.h zstd.h xxhash.h
+cw2/window*             | GLFW/*
+cw2/ui*                 | imgui*
+shaders/*               | mesh-format/* shaders/*
+shaders/interop.h       | glm/*
 '
 standard='^([a-z0-9_]+|(dlfcn|fcntl|unistd)\.h|sys/[a-z]+\.h)$'
 status=0
