@@ -129,7 +129,8 @@ inline std::string random_obj(std::mt19937& random, int face_count, int most_cor
             const auto index = [&](int from_one, int count) {
                 return std::to_string(pick(0, 1) ? from_one : from_one - count - 1);
             };
-            text += " " + index(positions - corners + i + 1, positions);
+            text += ' ';
+            text += index(positions - corners + i + 1, positions);
             const std::string uv = index(pick(1, uvs), uvs),
                               normal = index(pick(1, normals), normals);
             if (form == 1) text += "/" + uv;
