@@ -362,28 +362,40 @@ Mesh degenerate_plates() {
     return mesh;
 }
 
-class DegenerateLight : public testing::TestWithParam<std::pair<const char*, dvec3>> {};
+struct NamedLight {
+    const char* name;
+    dvec3 position;
+};
+
+void PrintTo(const NamedLight& light, std::ostream* out) {
+    *out << light.name;
+}
+
+class DegenerateLight : public testing::TestWithParam<NamedLight> {};
 
 TEST_P(DegenerateLight, LeavesEveryPixelFinite) {
     // The picture's size is odd, so that the middle pixel's ray is the z axis.
-    const Shot shot{
-        "", degenerate_plates, {{0.0, 0.0, 5.0}, {0.0, 0.0, 0.0}, 40, 161, 121}, GetParam().second};
+    const Shot shot{"",
+                    degenerate_plates,
+                    {{0.0, 0.0, 5.0}, {0.0, 0.0, 0.0}, 40, 161, 121},
+                    GetParam().position};
     const TemporaryFolder folder;
     const auto scene = baked(shot.mesh(), folder);
-    for (const ViewTruth& view : kViews) {
-        SCOPED_TRACE(view.name);
-        const Picture picture = draw(shot, scene, view.name);
+    for (const char* const view : {"shaded", "diffuse", "specular", "distribution", "masking",
+                                   "fresnel", "light-direction", "normal"}) {
+        SCOPED_TRACE(view);
+        const Picture picture = draw(shot, scene, view);
         EXPECT_EQ(count_not_finite(picture), 0);
         EXPECT_EQ(picture.at(80, 60)[3], 1.0f);
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(Positions, DegenerateLight,
-                         testing::Values(std::pair("on_the_surface", dvec3(0.0, 0.0, 0.0)),
-                                         std::pair("in_the_plane", dvec3(5.0, 0.0, 0.0)),
-                                         std::pair("opposite_the_camera", dvec3(0.0, 0.0, -5.0)),
-                                         std::pair("at_the_camera", dvec3(0.0, 0.0, 5.0)),
-                                         std::pair("far_away", dvec3(1e30, 1e30, 1e30))),
-                         [](const auto& light) { return std::string(light.param.first); });
+                         testing::Values(NamedLight{"on_the_surface", {0.0, 0.0, 0.0}},
+                                         NamedLight{"in_the_plane", {5.0, 0.0, 0.0}},
+                                         NamedLight{"opposite_the_camera", {0.0, 0.0, -5.0}},
+                                         NamedLight{"at_the_camera", {0.0, 0.0, 5.0}},
+                                         NamedLight{"far_away", {1e30, 1e30, 1e30}}),
+                         [](const auto& light) { return std::string(light.param.name); });
 
 }  // namespace
