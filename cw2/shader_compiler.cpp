@@ -28,7 +28,7 @@ std::string read_text(const std::filesystem::path& path) {
     return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()};
 }
 
-/// Finds `#include "shaders/..."` under the root.
+/// Finds what is included under the root.
 class Includes : public glslang::TShader::Includer {
  public:
     explicit Includes(std::filesystem::path root) : root_(std::move(root)) {}
@@ -38,10 +38,8 @@ class Includes : public glslang::TShader::Includer {
         try {
             const std::string& text = texts_.emplace_front(read_text(path));
             return new IncludeResult(path.string(), text.data(), text.size(), nullptr);
-        } catch (const mesh_format::FileError& error) {
-            // No name: glslang takes the text for the reason.
-            const std::string& reason = texts_.emplace_front(error.what());
-            return new IncludeResult("", reason.data(), reason.size(), nullptr);
+        } catch (const mesh_format::FileError&) {
+            return nullptr;  // glslang says which line asks for the file
         }
     }
     void releaseInclude(IncludeResult* result) override { delete result; }

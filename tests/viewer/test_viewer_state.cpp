@@ -1,0 +1,150 @@
+// What the keys do to what the window shows.
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "cw2/viewer_state.h"
+
+namespace {
+
+using cw2::CommandKind;
+using cw2::Input;
+using cw2::ViewerState;
+
+constexpr cw2::Bounds kBounds{{3.0f, -1.0f, 2.0f}, 8.0f};
+constexpr float kAspect = 1.5f;
+
+Input command(CommandKind kind, cw2::View view = 0) {
+    Input input;
+    input.commands = {{kind, view}};
+    return input;
+}
+
+Input flight(const glm::vec3& direction, float pace = 1.0f) {
+    Input input;
+    input.direction = direction;
+    input.pace = pace;
+    return input;
+}
+
+cw2::Options options_at(double time) {
+    cw2::Options options;
+    options.time = time;
+    return options;
+}
+
+struct Viewer {
+    ViewerState state{options_at(0.7), kBounds, kAspect};
+
+    bool apply(const Input& input, double seconds = 0.0) {
+        return state.apply(input, seconds, kAspect);
+    }
+    glm::vec3 light() const { return state.settings().light.position; }
+    cw2::Camera camera() const { return state.settings().camera; }
+};
+
+glm::vec3 light_after(double seconds) {
+    return cw2::orbit(cw2::default_light_position(kBounds), kBounds.center, seconds);
+}
+
+/// How far the camera goes in one second of `steps` equal frames; the first one counts little.
+float distance_flown(const Input& input, int steps) {
+    Viewer viewer;
+    viewer.apply(input, 0.0);
+    const glm::vec3 start = viewer.camera().position;
+    for (int i = 0; i < steps; ++i) viewer.apply(input, 1.0 / steps);
+    return glm::distance(start, viewer.camera().position);
+}
+
+TEST(ViewerState, BeginsAsHeadlessDoes) {
+    const Viewer viewer;
+    const auto expected = cw2::frame_settings(options_at(0.7), kBounds, kAspect);
+    EXPECT_EQ(viewer.camera().position, expected.camera.position);
+    EXPECT_EQ(viewer.camera().target, expected.camera.target);
+    EXPECT_EQ(viewer.light(), light_after(0.7));
+}
+
+TEST(ViewerState, TheLightMovesOnlyBetweenTwoSpacesAndGoesOnWhereItStopped) {
+    Viewer viewer;
+    EXPECT_FALSE(viewer.apply({}, 5.0));
+    EXPECT_EQ(viewer.light(), light_after(0.7));
+    viewer.apply(command(CommandKind::toggle_light), 3.0);
+    EXPECT_EQ(viewer.light(), light_after(0.7));
+    EXPECT_TRUE(viewer.apply({}, 0.5));
+    EXPECT_EQ(viewer.light(), light_after(0.7 + 0.5));
+    viewer.apply(command(CommandKind::toggle_light), 0.25);
+    EXPECT_FALSE(viewer.apply({}, 9.0));
+    EXPECT_EQ(viewer.light(), light_after(0.7 + 0.5 + 0.25));
+    viewer.apply(command(CommandKind::toggle_light));
+    viewer.apply({}, 0.125);
+    EXPECT_EQ(viewer.light(), light_after(0.7 + 0.5 + 0.25 + 0.125));
+}
+
+TEST(ViewerState, NextViewMeetsEveryViewAndPreviousGoesBack) {
+    Viewer viewer;
+    for (cw2::View view = 1; view <= cw2::kViewNames.size(); ++view) {
+        EXPECT_TRUE(viewer.apply(command(CommandKind::next_view)));
+        EXPECT_EQ(viewer.state.settings().view, view % cw2::kViewNames.size());
+    }
+    viewer.apply(command(CommandKind::previous_view));
+    EXPECT_EQ(viewer.state.settings().view, cw2::kViewNames.size() - 1);
+    viewer.apply(command(CommandKind::show_view, 4));
+    EXPECT_EQ(viewer.state.settings().view, 4u);
+}
+
+TEST(ViewerState, NormalMapAndAlphaMaskAreSwitchedEachByItsKey) {
+    Viewer viewer;
+    EXPECT_TRUE(viewer.apply(command(CommandKind::toggle_normal_map)));
+    EXPECT_FALSE(viewer.state.settings().normal_map);
+    EXPECT_TRUE(viewer.state.settings().alpha_mask);
+    EXPECT_TRUE(viewer.apply(command(CommandKind::toggle_alpha_mask)));
+    EXPECT_FALSE(viewer.state.settings().alpha_mask);
+    viewer.apply(command(CommandKind::toggle_normal_map));
+    EXPECT_TRUE(viewer.state.settings().normal_map);
+}
+
+TEST(ViewerState, ResetBringsBackTheExactCameraAndLight) {
+    Viewer viewer;
+    viewer.apply(command(CommandKind::toggle_light));
+    Input input = flight({1.0f, -1.0f, 1.0f});
+    input.drag = {40.0f, -70.0f};
+    viewer.apply(input, 2.0);
+    EXPECT_NE(viewer.camera().position, Viewer().camera().position);
+    EXPECT_NE(viewer.camera().target, Viewer().camera().target);
+    EXPECT_NE(viewer.light(), Viewer().light());
+    EXPECT_TRUE(viewer.apply(command(CommandKind::reset)));
+    EXPECT_EQ(viewer.camera().position, Viewer().camera().position);
+    EXPECT_EQ(viewer.camera().target, Viewer().camera().target);
+    EXPECT_EQ(viewer.light(), Viewer().light());
+    EXPECT_FALSE(viewer.apply({}, 1.0)) << "the light still moves";
+}
+
+TEST(ViewerState, FliesAtTheSameSpeedWhateverTheFrameRate) {
+    const Input forward = flight({0.0f, 0.0f, 1.0f});
+    const float distance = distance_flown(forward, 1000);
+    EXPECT_NEAR(distance, 0.25f * kBounds.radius, 1e-3f * kBounds.radius);
+    EXPECT_NEAR(distance_flown(forward, 3), distance, 1e-3f * distance);
+    EXPECT_NEAR(distance_flown(flight({1.0f, -1.0f, 0.0f}), 10), distance, 1e-3f * distance);
+    EXPECT_NEAR(distance_flown(flight({-1.0f, 0.0f, 0.0f}, 4.0f), 10), 4.0f * distance,
+                4e-3f * distance);
+}
+
+TEST(ViewerState, APressAfterALongPauseIsNoLeap) {
+    Viewer viewer;
+    const glm::vec3 start = viewer.camera().position;
+    EXPECT_TRUE(viewer.apply(flight({0.0f, 0.0f, 1.0f}), 60.0));
+    const float distance = glm::distance(start, viewer.camera().position);
+    EXPECT_GT(distance, 0.0f);
+    EXPECT_LT(distance, 0.01f * kBounds.radius);
+}
+
+TEST(ViewerState, CommandsAboutTheProgramLeaveThePictureAlone) {
+    Viewer viewer;
+    for (const CommandKind kind :
+         {CommandKind::reload_shaders, CommandKind::save_screenshot, CommandKind::end}) {
+        EXPECT_FALSE(viewer.apply(command(kind), 1.0));
+    }
+}
+
+}  // namespace

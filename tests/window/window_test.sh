@@ -1,0 +1,260 @@
+#!/usr/bin/env bash
+# What a user does with the window, and what must come of it.
+# Usage: window_test.sh CHECK CW2 TOOLS SOURCES SCENE WORK; TOOLS is the folder of the tests'
+# programs, SOURCES the repository's root, WORK a folder for what the test writes.
+set -euo pipefail
+
+check=$1 cw2=$2 tools=$3 sources=$4 scene=$5 work=$6
+rm -rf "$work"
+mkdir -p "$work"
+# shellcheck source-path=SCRIPTDIR
+source "${0%/*}/session.sh"
+
+# What the render tests see the stage with.
+camera=(--camera-position 0.3,1.6,4.3 --camera-target 0,0.75,0 --fov 42 --light-position 2.5,3.5,3)
+options=(--size 256x144 --samples 1 "${camera[@]}")
+
+check_shows_the_headless_picture() {
+    open_window "$cw2" "$scene" "${options[@]}"
+    take_picture
+    expect_headless "${options[@]}"
+    title_has "stage.cw2mesh - shaded" || fail "title"
+    wait_until title_has " ms"
+    close_window
+
+    # What is not given is the same too, but for the samples, which a CPU has one of.
+    open_window "$cw2" "$scene" --size 160x120 --time 1.2 --view normal
+    take_picture
+    expect_headless --size 160x120 --time 1.2 --view normal --samples 1
+    close_window
+
+    open_window "$cw2" "$scene" --size 160x120 --samples 4 --no-normal-map --no-alpha-mask
+    take_picture
+    expect_headless --size 160x120 --no-normal-map --no-alpha-mask
+    local first=$picture
+    take_picture
+    [[ $picture != "$first" ]] || fail "a screenshot took the place of another"
+    expect_same "$first" "$picture"
+    close_window
+}
+
+check_space_moves_and_stops_the_light() {
+    open_window "$cw2" "$scene" "${options[@]}"
+    take_picture
+    local start=$picture
+    take_picture
+    expect_same "$start" "$picture"
+    press space
+    wait_until picture_differs_from "$start"
+    local early=$picture
+    wait_until picture_differs_from "$early"
+    press space
+    take_picture
+    local stopped=$picture
+    take_picture
+    expect_same "$stopped" "$picture"
+    expect_different "$start" "$picture"
+    press r
+    take_picture
+    expect_same "$start" "$picture"
+    close_window
+}
+
+check_switches_normal_map_and_alpha_mask() {
+    open_window "$cw2" "$scene" "${options[@]}"
+    take_picture
+    local start=$picture
+    press n
+    take_picture
+    expect_different "$start" "$picture"
+    expect_headless "${options[@]}" --no-normal-map
+    press n
+    take_picture
+    expect_same "$start" "$picture"
+    press m
+    take_picture
+    expect_different "$start" "$picture"
+    expect_headless "${options[@]}" --no-alpha-mask
+    press m
+    take_picture
+    expect_same "$start" "$picture"
+    close_window
+}
+
+check_switches_views() {
+    open_window "$cw2" "$scene" "${options[@]}"
+    take_picture
+    local start=$picture
+    press 9
+    wait_until title_has "stage.cw2mesh - masking"
+    take_picture
+    expect_headless "${options[@]}" --view masking
+    press v
+    wait_until title_has " - fresnel"
+    take_picture
+    expect_headless "${options[@]}" --view fresnel
+    press 1
+    wait_until title_has " - shaded"
+    press shift+v
+    wait_until title_has " - alpha-mask"
+    press v
+    wait_until title_has " - shaded"
+    # With control these are no commands.
+    press ctrl+n ctrl+m ctrl+v ctrl+2
+    take_picture
+    expect_same "$start" "$picture"
+    close_window
+}
+
+check_moves_the_camera() {
+    open_window "$cw2" "$scene" "${options[@]}"
+    take_picture
+    local start=$picture key
+    for key in w s a d e q; do
+        xdotool keydown $key
+        wait_until picture_differs_from "$start"
+        xdotool keyup $key
+        press r
+        take_picture
+        expect_same "$start" "$picture"
+    done
+
+    xdotool mousemove --window "$window" 100 70 mousedown 1 mousemove_relative 60 20 mouseup 1
+    take_picture
+    expect_same "$start" "$picture"
+    xdotool mousedown 3
+    drag_changes() {
+        xdotool mousemove_relative 30 10
+        picture_differs_from "$start"
+    }
+    wait_until drag_changes
+    xdotool mouseup 3
+    take_picture
+    local turned=$picture
+    xdotool mousemove_relative 30 10
+    take_picture
+    expect_same "$turned" "$picture"
+    press r
+    take_picture
+    expect_same "$start" "$picture"
+    close_window
+}
+
+# A copy of the sources, and in `edited` the path of a shader in it.
+copy_sources() {
+    mkdir "$work/sources"
+    cp -r "$sources/shaders" "$sources/mesh-format" "$work/sources/"
+    edited=$work/sources/shaders/opaque.frag
+}
+
+check_reloads_shaders() {
+    copy_sources
+    open_window "$tools/cw2_with_sources" "$work/sources" "$scene" "${options[@]}"
+    take_picture
+    local start=$picture
+    # Somewhere that a reset would leave.
+    xdotool keydown w
+    wait_until picture_differs_from "$start"
+    xdotool keyup w
+    take_picture
+    start=$picture
+    press F5
+    take_picture
+    expect_same "$start" "$picture"
+
+    sed -i 's/view_color(1\.0)/1.0 - &/' "$edited"
+    press F5
+    take_picture
+    expect_different "$start" "$picture"
+    local negative=$picture
+
+    printf '#version 460\nvoid main() {\n    nonsense = 1;\n}\n' >"$edited"
+    press F5
+    wait_until title_has "shaders/opaque.frag:3: "
+    take_picture
+    expect_same "$negative" "$picture"
+    [[ $(<"$work/err") == "cw2: $edited:3: "*nonsense* ]] || fail "no error with file and line"
+    has_lines "$work/err" 2 && fail "more than one line"
+    : >"$work/err"
+
+    cp "$sources/shaders/opaque.frag" "$edited"
+    press ctrl+r
+    wait_until title_has "stage.cw2mesh - shaded"
+    take_picture
+    expect_same "$start" "$picture"
+    title_has "opaque.frag" && fail "the error is still in the title"
+    close_window
+}
+
+check_ends_with_1_after_a_validation_message() {
+    copy_sources
+    open_window "$tools/cw2_with_sources" "$work/sources" "$scene" "${options[@]}"
+    # The layers warn of a vertex shader whose outputs nobody reads.
+    printf '#version 460\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(1); }\n' \
+        >"$edited"
+    press F5
+    take_picture
+    press Escape
+    local status=0
+    wait "$window_process" || status=$?
+    window_process=
+    [[ $status -eq 1 && $(<"$work/err") == "cw2: validation: "* ]] || fail "status $status"
+}
+
+# Width and height in the header of a PNG.
+size_of() {
+    echo $((16#$(od -An -tx1 -j16 -N4 "$1" | tr -d ' ')))x$((16#$(od -An -tx1 -j20 -N4 "$1" | tr -d ' ')))
+}
+
+check_survives_resizing_and_minimising() {
+    open_window "$cw2" "$scene" "${options[@]}"
+    picture_has_size() {
+        take_picture
+        [[ $(size_of "$picture") == "$1" ]]
+    }
+    local size
+    for size in 300x200 1x1 120x250; do
+        xdotool windowsize "$window" "${size%x*}" "${size#*x}"
+        wait_until picture_has_size $size
+    done
+    expect_headless --size 120x250 --samples 1 "${camera[@]}"
+    # While the light moves, so that every size is drawn.
+    press space
+    for size in 200 190 180 170 160 150; do xdotool windowsize "$window" $size $size; done
+    wait_until picture_has_size 150x150
+    press space r
+    take_picture
+    local start=$picture
+
+    "$tools/minimise" "$window" yes
+    "$tools/minimise" "$window" no
+    wait_until has_focus
+    take_picture
+    expect_same "$start" "$picture"
+    press space
+    "$tools/minimise" "$window" yes
+    "$tools/minimise" "$window" no
+    wait_until has_focus
+    wait_until picture_differs_from "$start"
+    close_window
+}
+
+# cw2 must end with a status of 1 and one line that has the words.
+expect_complaint() {
+    local words=$1 status=0
+    shift
+    "$@" >"$work/out" 2>"$work/err" || status=$?
+    [[ $status -eq 1 ]] || fail "status $status of: $*"
+    [[ $(wc -l <"$work/err") -eq 1 && $(<"$work/err") == "cw2: "*"$words"* ]] ||
+        fail "not one line with '$words'"
+}
+
+check_says_what_it_cannot_do() {
+    expect_complaint "nothing_there.cw2mesh" "$cw2" "$work/nothing_there.cw2mesh"
+    expect_complaint "--size" "$cw2" "$scene" --size 40000x20
+    expect_complaint "no such device" "$cw2" "$scene" --device "no such device"
+    expect_complaint "--output" env -u DISPLAY -u WAYLAND_DISPLAY "$cw2" "$scene"
+}
+
+start_display
+"check_$check"
