@@ -231,9 +231,10 @@ Header checked_header(const Checker& check, std::span<const std::byte> bytes) {
     return header;
 }
 
-constexpr std::array<const char*, kSectionCount> kSectionNames{"scene",     "meshes",   "chunks",
-                                                               "materials", "textures", "strings",
-                                                               "vertices",  "indices",  "texels"};
+constexpr std::array<const char*, kSectionCount> kSectionNames{
+    "scene",    "meshes",  "chunks", "materials",        "textures",       "strings",
+    "vertices", "indices", "texels", "encoded vertices", "encoded indices"};
+static_assert(kSectionNames.back() != nullptr);
 
 /// The sections of a file whose header has been checked.
 class SectionReader {
