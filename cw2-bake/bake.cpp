@@ -15,6 +15,7 @@
 #include "cw2-bake/quantise.h"
 #include "cw2-bake/read_obj.h"
 #include "cw2-bake/report.h"
+#include "cw2-bake/stats.h"
 #include "cw2-bake/textures.h"
 #include "cw2-bake/up_axis.h"
 #include "cw2-bake/weld.h"
@@ -131,6 +132,13 @@ Tables make_tables(const std::vector<SourceMaterial>& materials, TextureSet& set
     return tables;
 }
 
+void write_stats(const Settings& settings, const BakeStats& stats) {
+    const std::string json = to_json(stats, std::filesystem::file_size(settings.input));
+    mesh_format::OutputFile file(*settings.stats);
+    file.write(std::as_bytes(std::span(json)));
+    file.commit();
+}
+
 }  // namespace
 
 std::string bake(const Settings& settings, const Warn& warn) {
@@ -139,14 +147,20 @@ std::string bake(const Settings& settings, const Warn& warn) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     std::max<std::size_t>(threads, 1));
 
+    StageClock clock;
     SourceScene scene = read_obj(settings.input, warn);
+    clock.end("read");
     if (settings.z_up) turn_z_up(scene);
     generate_normals(scene);
+    clock.end("normals");
     const std::vector<ChunkedMesh> meshes = make_meshes(scene);
+    clock.end("weld, tangents, chunks");
     TextureSet textures = make_textures(settings, scene, warn);
+    clock.end("textures");
     const PackedGeometry geometry =
         quantise(meshes, uv_budgets(textures), {settings.frame_form, settings.position_form});
     const Tables tables = make_tables(scene.materials, textures);
+    clock.end("pack");
 
     mesh_format::Document document{.scene = geometry.scene,
                                    .meshes = geometry.meshes,
@@ -165,6 +179,8 @@ std::string bake(const Settings& settings, const Warn& warn) {
         document.indices = geometry.indices;
     }
     const std::uint64_t bytes = mesh_format::write(document, settings.output);
+    clock.end("write");
+    if (settings.stats) write_stats(settings, {bytes, measure(meshes), geometry.scene, clock});
     return fmt::format("{}\n{}", settings.output.string(), summary(document, bytes));
 }
 

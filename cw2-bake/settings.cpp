@@ -62,6 +62,8 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     app.add_option("--threads", settings.threads, "threads to use [one a processor]")
         ->check(CLI::Range(1, 1024))
         ->type_name("N");
+    app.add_option("--stats", settings.stats, "write counts, errors, times and memory as JSON")
+        ->type_name("FILE.json");
     app.add_flag("--strict", settings.strict, "a warning is an error");
     app.add_flag("--quiet", settings.quiet, "print errors only");
     app.add_flag("--inspect", settings.inspect, "print what is in a baked file");

@@ -21,12 +21,13 @@ struct Settings {
     mesh_format::FrameForm frame_form = mesh_format::FrameForm::quat48;
     mesh_format::PositionForm position_form = mesh_format::PositionForm::quantised;
     TextureMode textures = TextureMode::lossless;
-    bool compress = false;  ///< store vertices and indices in fewer bytes
-    int threads = 0;        ///< 0: one a processor
-    bool strict = false;    ///< a warning is an error
-    bool quiet = false;     ///< print errors only
-    bool inspect = false;   ///< print what is in the input, a .cw2mesh file
-    bool json = false;      ///< with inspect: for machines
+    bool compress = false;                       ///< store vertices and indices in fewer bytes
+    int threads = 0;                             ///< 0: one a processor
+    std::optional<std::filesystem::path> stats;  ///< where to write what the bake did, as JSON
+    bool strict = false;                         ///< a warning is an error
+    bool quiet = false;                          ///< print errors only
+    bool inspect = false;                        ///< print what is in the input, a .cw2mesh file
+    bool json = false;                           ///< with inspect: for machines
 };
 
 /// A command line that does not make sense; what() is one line.
