@@ -9,7 +9,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 
-#include "tests/render/bumps.h"
+#include "tests/render/known_textures.h"
 #include "tests/render/scene_writer.h"
 #include "tests/support/image.h"
 
@@ -43,16 +43,6 @@ std::vector<double> letter(dvec2 p) {
     return {0.8, 0.78, 0.72};
 }
 
-/// A pointed leaf on a stem that bends to the right at its foot.
-bool in_leaf(dvec2 p) {
-    const double along = (p.y - 0.25) / 0.7;
-    if (along > 0.0 && along < 1.0) {
-        const double half_width = 0.42 * std::sin(M_PI * std::sqrt(along)) * (1.0 - 0.35 * along);
-        return std::abs(p.x - 0.5) < half_width;
-    }
-    return p.y <= 0.26 && std::abs(p.x - 0.5 - 1.2 * (0.26 - p.y)) < 0.035;
-}
-
 std::vector<double> encoded(const std::array<double, 3>& normal) {
     return {0.5 + 0.5 * normal[0], 0.5 + 0.5 * normal[1], 0.5 + 0.5 * normal[2]};
 }
@@ -67,21 +57,17 @@ void write_textures(const fs::path& folder) {
     // -bm 16.64 makes a step from 0 to 1 as high as 16.64 texels, 0.13 of the width.
     write("heights.png", 1,
           [](dvec2 p) { return std::vector{0.5 + bump_height(p.x, p.y) / 0.13}; });
-    write("leaf_mask.png", 1, [](dvec2 p) { return std::vector{in_leaf(p) ? 1.0 : 0.0}; });
+    write("leaf_mask.png", 1, [](dvec2 p) { return std::vector{in_leaf(p.x, p.y) ? 1.0 : 0.0}; });
     write("leaf.png", 4, [](dvec2 p) {
         const double vein = std::abs(p.x - 0.5) < 0.03 ? 0.5 : 1.0;
-        return std::vector{0.25 * vein, 0.55 * vein, 0.2 * vein, in_leaf(p) ? 1.0 : 0.0};
+        return std::vector{0.25 * vein, 0.55 * vein, 0.2 * vein, in_leaf(p.x, p.y) ? 1.0 : 0.0};
     });
     write("rough.png", 1, [](dvec2 p) { return std::vector{p.y < 0.5 ? 0.25 : 0.7}; });
     write("metal.png", 1,
           [](dvec2 p) { return std::vector{std::fmod(p.x * 8.0, 1.0) < 0.5 ? 0.0 : 1.0}; });
-    // Quadrants: red and green above, blue and yellow below.
     write("quadrants.png", 3, [](dvec2 p) {
-        const double r[] = {40, 230, 200, 30};
-        const double g[] = {60, 210, 30, 150};
-        const double b[] = {220, 20, 40, 70};
-        const int i = (p.y > 0.5 ? 2 : 0) + (p.x > 0.5 ? 1 : 0);
-        return std::vector{r[i] / 255.0, g[i] / 255.0, b[i] / 255.0};
+        const int* const color = kQuadrants[(p.y > 0.5 ? 2 : 0) + (p.x > 0.5 ? 1 : 0)];
+        return std::vector{color[0] / 255.0, color[1] / 255.0, color[2] / 255.0};
     });
 }
 

@@ -1,4 +1,4 @@
-// A height field whose normals are known.
+// What the textures of the test scenes show, as functions of u and v, with v up.
 #pragma once
 
 #include <array>
@@ -42,3 +42,18 @@ inline std::array<double, 3> bump_normal(double u, double v) {
     const double length = std::sqrt(du * du + dv * dv + 1.0);
     return {-du / length, -dv / length, 1.0 / length};
 }
+
+/// A pointed leaf on a stem that bends to the right at its foot.
+inline bool in_leaf(double u, double v) {
+    const double along = (v - 0.25) / 0.7;
+    if (along > 0.0 && along < 1.0) {
+        const double half_width = 0.42 * std::sin(M_PI * std::sqrt(along)) * (1.0 - 0.35 * along);
+        return std::abs(u - 0.5) < half_width;
+    }
+    return v <= 0.26 && std::abs(u - 0.5 - 1.2 * (0.26 - v)) < 0.035;
+}
+
+/// Colours of an image's quarters, in 255ths, sRGB: below left, below right, above left, above
+/// right.
+inline constexpr int kQuadrants[4][3] = {
+    {40, 60, 220}, {230, 210, 20}, {200, 30, 40}, {30, 150, 70}};
