@@ -70,7 +70,7 @@ float mirrored(float s) {
 void add_archivolt(Mesh& stones, Mesh& bead, float springing) {
     constexpr float kBeadRadius = kOuterRadius - kBead;
     append(stones, patch(
-                       kArchSegments, 2,
+                       kArchSegments, 1,
                        [&](float s, float t) {
                            const float radius = mix(kArchRadius, kBeadRadius - kBead, t);
                            return vec3(on_arch(s) * radius + vec2(0.0f, springing),
@@ -78,7 +78,7 @@ void add_archivolt(Mesh& stones, Mesh& bead, float springing) {
                        },
                        [](float s, float t) { return vec2(2.0f * mirrored(s), t); }));
     append(bead, patch(
-                     kArchSegments, 6,
+                     kArchSegments, 4,
                      [&](float s, float t) {
                          const vec2 around(-std::cos(kPi * t), std::sin(kPi * t));
                          return vec3(
@@ -90,7 +90,7 @@ void add_archivolt(Mesh& stones, Mesh& bead, float springing) {
 
 /// The wall above and beside an arch, on the front.
 Mesh spandrel(BayWidth width, float springing, float top, float u_offset) {
-    constexpr int kRows = 4;
+    constexpr int kRows = 2;
     constexpr float kScale = 1.0f / 3.0f;
     const auto uv_of = [&](vec3 p) { return vec2(p.x + u_offset, p.y) * kScale; };
     Mesh mesh;
@@ -127,7 +127,7 @@ void add_arch(Model& model, const Bay& bay, float springing, float top, float u_
     constexpr float kHalfSoffit = kHalfDepth + kRelief;
     append(voussoirs,
            patch(
-               kArchSegments, 2,
+               kArchSegments, 1,
                [&](float s, float t) {
                    return vec3(on_arch(s) * kArchRadius + vec2(0.0f, springing),
                                mix(-kHalfSoffit, kHalfSoffit, t));
@@ -150,7 +150,7 @@ Mesh capital(float neck, float lip, float height) {
         return curl * blade * tip * ribs;
     };
     return patch(
-        56, 18,
+        48, 16,
         [=](float u, float v) {
             const float angle = 2.0f * kPi * u;
             float radius = mix(neck, lip, std::pow(std::fmax(v, 0.0f), 2.4f));
@@ -170,12 +170,12 @@ void add_column(Model& model, const mat4& world_from_column, float height, float
     const float shaft_top = height - kCapital - kAbacus;
     Mesh& stone = model.part("columns", "limestone");
     append(stone, box({-0.25f, 0, -0.25f}, {0.25f, 0.11f, 0.25f}, 0.012f, 1.0f), world_from_column);
-    const Profile foot{curve({{0.215f, 0.11f}, {0.24f, 0.14f}, {0.215f, 0.175f}}, 4),
+    const Profile foot{curve({{0.215f, 0.11f}, {0.24f, 0.14f}, {0.215f, 0.175f}}, 2),
                        {{0.215f, 0.175f}, {0.20f, 0.18f}},
-                       curve({{0.20f, 0.18f}, {0.178f, 0.205f}, {0.193f, 0.23f}}, 4),
-                       curve({{0.193f, 0.23f}, {0.21f, 0.25f}, {0.193f, 0.272f}}, 4),
-                       curve({{0.193f, 0.272f}, {0.175f, 0.28f}, {0.168f, 0.30f}}, 3)};
-    append(stone, lathe(foot, 28, 1.0f, 1.0f), world_from_column);
+                       curve({{0.20f, 0.18f}, {0.178f, 0.205f}, {0.193f, 0.23f}}, 2),
+                       curve({{0.193f, 0.23f}, {0.21f, 0.25f}, {0.193f, 0.272f}}, 2),
+                       curve({{0.193f, 0.272f}, {0.175f, 0.28f}, {0.168f, 0.30f}}, 2)};
+    append(stone, lathe(foot, 24, 1.0f, 1.0f), world_from_column);
     const auto shaft = [&](float u, float v) {
         const float angle = 2.0f * kPi * u;
         const float fade = smooth_step(0.0f, 0.05f, v) * (1.0f - smooth_step(0.95f, 1.0f, v));
@@ -189,7 +189,7 @@ void add_column(Model& model, const mat4& world_from_column, float height, float
            world_from_column);
     const Profile ring{curve({{0.145f, -0.035f}, {0.17f, -0.015f}, {0.145f, 0.005f}}, 4)};
     const mat4 at_capital = glm::translate(world_from_column, vec3(0, shaft_top, 0));
-    append(stone, lathe(ring, 28, 1.0f, 1.0f), at_capital);
+    append(stone, lathe(ring, 24, 1.0f, 1.0f), at_capital);
     append(stone, capital(0.142f, 0.235f, kCapital), at_capital);
     append(stone, box({-0.30f, height - kAbacus, -0.30f}, {0.30f, height, 0.30f}, 0.015f, 1.0f),
            world_from_column);
@@ -240,7 +240,7 @@ void add_balustrade(Model& model, const mat4& world_from_bay) {
                                  2),
                            curve({{0.045f, 0.66f}, {0.060f, 0.68f}, {0.045f, 0.70f}}, 2),
                            {{0.068f, 0.70f}, {0.068f, 0.76f}}};
-    const Mesh turned = lathe(baluster, 12, 1.0f, 1.0f);
+    const Mesh turned = lathe(baluster, 10, 1.0f, 1.0f);
     constexpr int kCount = 7;
     for (int i = 0; i < kCount; ++i) {
         const float x = 0.245f * (static_cast<float>(i) - 0.5f * (kCount - 1));

@@ -7,6 +7,9 @@ Model courtyard() {
     add_walls_and_floors(model);
     add_arcades(model);
     add_roof(model);
+    add_sculpture(model);
+    add_furnishings(model);
+    add_plants(model);
     return model;
 }
 

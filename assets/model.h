@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
@@ -38,11 +39,12 @@ void append(Mesh& to, const Mesh& from, const glm::mat4& to_from_local = glm::ma
 /// Gathers meshes under (name, material), in order of first use.
 class Model {
  public:
+    /// The part's mesh, made when it is first asked for; the reference stays valid.
     Mesh& part(const std::string& name, const std::string& material);
-    const std::vector<Part>& parts() const { return parts_; }
+    const std::deque<Part>& parts() const { return parts_; }
 
  private:
-    std::vector<Part> parts_;
+    std::deque<Part> parts_;
 };
 
 std::size_t count_triangles(const Model& model);

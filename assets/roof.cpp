@@ -103,7 +103,7 @@ void add_wing(Model& model, const Wing& wing, std::uint32_t seed) {
     for (int i = 0; i < count; ++i) {
         const float s = wing.low(kRidge) + length * static_cast<float>(i) / count;
         append(tiles, patch(
-                          8, 1,
+                          1, 8,
                           [&](float u, float v) {
                               const float radius = mix(0.14f, 0.125f, u);
                               const float angle = kPi * v;

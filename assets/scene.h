@@ -26,6 +26,9 @@ inline constexpr glm::vec3 kSculpture{1.2f, 0.0f, 1.2f};
 void add_arcades(Model& model);
 void add_walls_and_floors(Model& model);
 void add_roof(Model& model);
+void add_sculpture(Model& model);    ///< pool, plinth and the lion's head
+void add_furnishings(Model& model);  ///< curtains, carpets, lanterns, chains, posts
+void add_plants(Model& model);
 
 /// All of the above.
 Model courtyard();

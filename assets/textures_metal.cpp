@@ -18,9 +18,9 @@ Texel bronze(vec2 uv) {
     texel.color = glm::mix(vec3(0.86f, 0.58f, 0.27f), vec3(0.66f, 0.38f, 0.17f),
                            saturate(0.45f + 0.8f * cloud)) *
                   (1.0f + 0.05f * grain);
-    texel.roughness = 0.50f + 0.10f * cloud + 0.05f * grain;
+    texel.roughness = 0.58f + 0.08f * cloud + 0.04f * grain;
     texel.metalness = 1.0f;
-    texel.height = 0.0016f * hammered + 0.00012f * scratch + 0.00010f * grain;
+    texel.height = 0.0007f * hammered + 0.00012f * scratch + 0.00010f * grain;
     return texel;
 }
 

@@ -118,8 +118,8 @@ Texel limestone(vec2 uv) {
     const float coarse = fbm(uv * 4.0f, 4, 6, 201);
     const float strata = fbm(uv * vec2(2.0f, 12.0f), 12, 4, 203);
     const Cell shell = cells(uv * 26.0f, 26, 205);
-    const float hole =
-        smooth_step(0.20f, 0.05f, shell.nearest) * smooth_step(0.35f, 0.5f, unit(hash(shell.id)));
+    const float hole = smooth_step(mix(0.08f, 0.20f, unit(shell.id)), 0.03f, shell.nearest) *
+                       smooth_step(0.55f, 0.75f, unit(hash(shell.id)));
     const float grain = fbm(uv * 128.0f, 128, 2, 207);
     vec3 color = glm::mix(vec3(0.76f, 0.69f, 0.56f), vec3(0.66f, 0.56f, 0.42f),
                           saturate(0.45f + 0.6f * coarse));
@@ -142,7 +142,7 @@ Texel voussoir(vec2 uv) {
     const vec2 axis = glm::normalize(vec2(0.45f, 1.0f));
     const vec2 leaf(glm::dot(p, axis), glm::dot(p, vec2(axis.y, -axis.x)));
     const float along = saturate((leaf.x + 0.36f) / 0.72f);
-    const float width = 0.19f * std::sqrt(std::sin(kPi * along)) * (1.25f - 0.6f * along);
+    const float width = 0.30f * std::sqrt(std::sin(kPi * along)) * (1.25f - 0.7f * along);
     const float inside = smooth_step(0.0f, 0.055f, width - std::fabs(leaf.y));
     const float rib = std::fabs(std::sin((leaf.x - 0.8f * std::fabs(leaf.y)) * 26.0f));
     const float midrib = smooth_step(0.03f, 0.0f, std::fabs(leaf.y));
