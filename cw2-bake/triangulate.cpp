@@ -110,26 +110,14 @@ bool Triangulator::blocks(std::uint32_t q, const Triangle& ear, Rule rule) const
     const double along_ab = turn(a, b, q), along_bc = turn(b, c, q), along_ca = turn(c, a, q);
     if (rule == Rule::clear_inside) return along_ab > 0 && along_bc > 0 && along_ca > 0;
     if (along_ab < 0 || along_bc < 0 || along_ca < 0) return false;
-    if (points_[q] == points_[a] || points_[q] == points_[c]) return false;
-    if (points_[q] != points_[b]) return true;
-    // The outline touches itself at b: no harm unless it goes into the ear from there, or runs back
-    // along both its sides, when there may be nothing between them.
-    const std::uint32_t from = previous_[q], to = next_[q];
-    const double from_ab = turn(a, b, from), from_bc = turn(b, c, from);
-    const double to_ab = turn(a, b, to), to_bc = turn(b, c, to);
-    return (from_ab > 0 && from_bc > 0) || (to_ab > 0 && to_bc > 0) ||
-           (from_ab > 0 && from_bc == 0 && to_ab == 0 && to_bc > 0);
-}
-
-/// A corner that repeats the one before it, or the tip of a spike.
-bool Triangulator::is_idle(std::uint32_t v) const {
-    const glm::dvec2& a = points_[previous_[v]];
-    return points_[v] == a || points_[next_[v]] == a;
+    // Where the outline touches itself at an end of the cut, it does not enter the ear from there
+    // without a corner that stands in it.
+    return points_[q] != points_[a] && points_[q] != points_[c];
 }
 
 bool Triangulator::may_clip(std::uint32_t v, Rule rule) const {
     const Triangle ear{previous_[v], v, next_[v]};
-    if (rule == Rule::any || is_idle(v)) return true;
+    if (rule == Rule::any) return true;
     const double area = turn(ear[0], ear[1], ear[2]);
     if (rule == Rule::without_area) return area == 0;
     if (area <= 0) return false;
@@ -181,16 +169,6 @@ void Triangulator::clip_ears() {
         }
         --left;
     };
-    for (std::uint32_t passed = 0; passed < count && left > 3;) {
-        if (is_idle(v)) {
-            clip();
-            v = previous_[v];
-        } else {
-            v = next_[v];
-            ++passed;
-        }
-    }
-
     Rule rule = Rule::ear;
     for (std::uint32_t refused = 0; left > 3;) {
         if (may_clip(v, rule)) {

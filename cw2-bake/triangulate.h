@@ -32,7 +32,6 @@ class Triangulator {
     void clip_ears();
     void build_grid();
     double turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
-    bool is_idle(std::uint32_t v) const;
     bool may_clip(std::uint32_t v, Rule rule) const;
     bool blocks(std::uint32_t q, const Triangle& ear, Rule rule) const;
     std::size_t grid_cell(double offset, double extent) const;
