@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "cw2-bake/chunks.h"
 #include "cw2-bake/compress.h"
@@ -30,13 +31,17 @@ using mesh_format::MaterialRecord;
 using mesh_format::StringRef;
 using mesh_format::TextureRecord;
 
-/// Welds the scene's triangles, gives them their frames, cuts them into chunks; the meshes come in
-/// the order of their materials.
-std::vector<ChunkedMesh> make_meshes(const SourceScene& scene) {
-    const std::vector<WeldedMesh> welded = weld(scene);
+/// Welds the scene's triangles, gives them their frames, and cuts them into chunks; the meshes come
+/// in the order of their materials. Each step frees what the one before it made, since that is what
+/// the peak memory of a bake consists of; of the scene only the materials are left.
+std::vector<ChunkedMesh> make_meshes(SourceScene& scene, std::span<const UvBudget> budgets) {
+    std::vector<WeldedMesh> welded = weld(scene);
+    scene = {.materials = std::move(scene.materials)};
     std::vector<std::vector<ChunkedMesh>> pieces(welded.size());
-    tbb::parallel_for(std::size_t{0}, welded.size(),
-                      [&](std::size_t i) { pieces[i] = make_chunks(add_tangents(welded[i])); });
+    tbb::parallel_for(std::size_t{0}, welded.size(), [&](std::size_t i) {
+        const FramedMesh framed = add_tangents(std::exchange(welded[i], {}));
+        pieces[i] = make_chunks(framed, budgets[framed.material]);
+    });
     std::vector<ChunkedMesh> meshes;
     for (auto& part : pieces) std::move(part.begin(), part.end(), std::back_inserter(meshes));
     return meshes;
@@ -153,12 +158,13 @@ std::string bake(const Settings& settings, const Warn& warn) {
     if (settings.z_up) turn_z_up(scene);
     generate_normals(scene);
     clock.end("normals");
-    const std::vector<ChunkedMesh> meshes = make_meshes(scene);
-    clock.end("weld, tangents, chunks");
     TextureSet textures = make_textures(settings, scene, warn);
     clock.end("textures");
+    const std::vector<UvBudget> budgets = uv_budgets(textures);
+    const std::vector<ChunkedMesh> meshes = make_meshes(scene, budgets);
+    clock.end("weld, tangents, chunks");
     const PackedGeometry geometry =
-        quantise(meshes, uv_budgets(textures), {settings.frame_form, settings.position_form});
+        quantise(meshes, budgets, {settings.frame_form, settings.position_form});
     const Tables tables = make_tables(scene.materials, textures);
     clock.end("pack");
 

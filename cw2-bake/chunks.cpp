@@ -6,6 +6,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <limits>
 #include <span>
@@ -19,6 +20,8 @@ namespace {
 using mesh_format::kMaxChunkTriangles;
 
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
+// Steps of a 16-bit lattice, less one for where its ends are rounded to.
+constexpr double kLatticeSpan = 65'534.0;
 // Below this many triangles a task of its own costs more than it saves.
 constexpr std::size_t kParallelSplit = 16'384;
 // How much longer the vertex cache may work so that less is drawn over.
@@ -128,11 +131,18 @@ class ChunkOptimiser {
 /// Gathers chunks into meshes.
 class Assembler {
  public:
-    explicit Assembler(const FramedMesh& source)
-        : source_(source), placed_(source.positions.size(), kNone) {}
+    Assembler(const FramedMesh& source, const UvBudget& budget)
+        : source_(source),
+          largest_uv_range_(kLatticeSpan * std::exp2(std::floor(std::log2(budget.largest_step())))),
+          placed_(source.positions.size(), kNone) {}
 
     void add(std::span<const std::uint32_t> indices) {
-        if (meshes_.empty() || !has_room(indices)) start_mesh();
+        const UvBox box = uv_box(indices);
+        const UvBox merged{glm::min(box_.low, box.low), glm::max(box_.high, box.high)};
+        // A chunk too wide by itself shares a mesh with others of that kind only.
+        const bool uvs_fit = is_wide(merged) == is_wide(box) && is_wide(merged) == is_wide(box_);
+        if (meshes_.empty() || !uvs_fit || !has_room(indices)) start_mesh();
+        box_ = {glm::min(box_.low, box.low), glm::max(box_.high, box.high)};
         ChunkedMesh& piece = meshes_.back();
         FramedMesh& mesh = piece.mesh;
         piece.chunks.push_back({static_cast<std::uint32_t>(mesh.indices.size()),
@@ -153,6 +163,26 @@ class Assembler {
     std::vector<ChunkedMesh> take() { return std::move(meshes_); }
 
  private:
+    struct UvBox {
+        glm::vec2 low{std::numeric_limits<float>::infinity()};
+        glm::vec2 high{-std::numeric_limits<float>::infinity()};
+    };
+
+    UvBox uv_box(std::span<const std::uint32_t> indices) const {
+        UvBox box;
+        for (const std::uint32_t vertex : indices) {
+            box.low = glm::min(box.low, source_.uvs[vertex]);
+            box.high = glm::max(box.high, source_.uvs[vertex]);
+        }
+        return box;
+    }
+
+    /// Whether 16 bits cannot hold UVs of this range exactly enough.
+    bool is_wide(const UvBox& box) const {
+        return box.high.x - box.low.x > largest_uv_range_ ||
+               box.high.y - box.low.y > largest_uv_range_;
+    }
+
     bool has_room(std::span<const std::uint32_t> indices) const {
         // Every index may name a new vertex; only near the limit is it worth to count.
         const std::size_t room = mesh_format::kMaxMeshVertices - members_.size();
@@ -168,10 +198,13 @@ class Assembler {
     void start_mesh() {
         for (const std::uint32_t vertex : members_) placed_[vertex] = kNone;
         members_.clear();
+        box_ = {};
         meshes_.emplace_back().mesh.material = source_.material;
     }
 
     const FramedMesh& source_;
+    double largest_uv_range_;
+    UvBox box_;                           // of the last mesh
     std::vector<std::uint32_t> placed_;   // source vertex -> vertex of the last mesh
     std::vector<std::uint32_t> members_;  // vertex of the last mesh -> source vertex
     std::vector<ChunkedMesh> meshes_;
@@ -191,7 +224,7 @@ std::vector<Triangle> triangles_of(const FramedMesh& mesh) {
 
 }  // namespace
 
-std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh) {
+std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh, const UvBudget& budget) {
     std::vector<Triangle> triangles = triangles_of(mesh);
     std::vector<Range> ranges(chunk_count(triangles.size()));
     split(triangles, 0, ranges);
@@ -205,7 +238,7 @@ std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh) {
                                indices.data() + 3 * std::size_t{range.first});
     });
 
-    Assembler assembler(mesh);
+    Assembler assembler(mesh, budget);
     for (const Range range : ranges) {
         assembler.add(std::span(indices).subspan(3 * std::size_t{range.first},
                                                  3 * std::size_t{range.last - range.first}));

@@ -8,6 +8,15 @@
 
 namespace bake {
 
+/// How exact the UVs of a material must be.
+struct UvBudget {
+    std::uint32_t texels = 1024;  ///< the longest side of its textures
+    bool shiftable = true;        ///< all its textures repeat: whole numbers may be subtracted
+
+    /// Half the step of a UV lattice may be 1/8 texel at most.
+    double largest_step() const { return 0.25 / texels; }
+};
+
 /// Triangles of a mesh that lie close together.
 struct Chunk {
     std::uint32_t first_index;  ///< into the mesh's indices
@@ -23,7 +32,8 @@ struct ChunkedMesh {
 
 /// Cuts `mesh` by halving its triangles at the median of their longest side until at most
 /// mesh_format::kMaxChunkTriangles are left, then orders each chunk's triangles for the vertex
-/// cache and against overdraw. Neighbouring chunks share a mesh as long as its vertices allow.
-std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh);
+/// cache and against overdraw. Neighbouring chunks share a mesh as long as its number of vertices
+/// and the range of its UVs, held in 16 bits within `budget`, allow.
+std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh, const UvBudget& budget);
 
 }  // namespace bake

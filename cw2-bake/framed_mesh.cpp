@@ -10,7 +10,7 @@ constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 
 }  // namespace
 
-FramedMesh add_tangents(const WeldedMesh& mesh) {
+FramedMesh add_tangents(WeldedMesh mesh) {
     const std::vector<glm::vec4> corner_tangents =
         generate_tangents(mesh.positions, mesh.normals, mesh.uvs, mesh.indices);
 

@@ -22,6 +22,6 @@ struct FramedMesh {
 
 /// Gives `mesh` its tangents, which follow OBJ's v (up), and turns v down: vertices whose corners
 /// differ in them are split. Vertices come in the order of their first use.
-FramedMesh add_tangents(const WeldedMesh& mesh);
+FramedMesh add_tangents(WeldedMesh mesh);
 
 }  // namespace bake

@@ -26,7 +26,6 @@ using mesh_format::UvForm;
 constexpr double kLatticeSpan = 65'535.0;
 /// Lattice coordinates below this are exact as floats.
 constexpr double kExactIntegers = 16'777'216.0;
-constexpr double kUvErrorBudget = 1.0 / 8.0;  // texels
 
 struct Box {
     glm::vec3 low{std::numeric_limits<float>::infinity()};
@@ -145,7 +144,7 @@ class MeshPacker {
                 last - first, [&](double candidate) { return fits(first, last, candidate); });
             record_.uv_step[axis] = static_cast<float>(step);
             record_.uv_origin[axis] = static_cast<float>(std::round(first / step) * step);
-            if (0.5 * step * texels_ > kUvErrorBudget) record_.uv_form = UvForm::f32;
+            if (step > budget.largest_step()) record_.uv_form = UvForm::f32;
         }
         if (record_.uv_form == UvForm::f32) {
             uv_shift_ = glm::dvec2(0.0);

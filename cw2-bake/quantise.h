@@ -16,12 +16,6 @@ struct QuantiseSettings {
     mesh_format::PositionForm position_form;  ///< f32 keeps UVs as floats, too
 };
 
-/// What quantise needs to know of a material.
-struct UvBudget {
-    std::uint32_t texels = 1024;  ///< the longest side of its textures
-    bool shiftable = true;        ///< all its textures repeat: whole numbers may be subtracted
-};
-
 /// The packed form of all meshes: the sections of the file that hold geometry.
 struct PackedGeometry {
     mesh_format::SceneRecord scene{};

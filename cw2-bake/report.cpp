@@ -53,6 +53,7 @@ struct Counts {
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;
     std::size_t masked_materials = 0;
+    std::size_t wide_meshes = 0;     ///< whose UVs 16 bits would not hold exactly enough
     std::uint64_t vertex_bytes = 0;  ///< as stored
     std::uint64_t index_bytes = 0;
     float extent = 0.0f;  ///< longest side of the bounding box
@@ -63,6 +64,9 @@ Counts count(const Document& document) {
     for (const MeshRecord& mesh : document.meshes) {
         counts.vertices += mesh.vertex_count;
         counts.triangles += mesh.index_count / 3;
+        if (mesh.uv_form == UvForm::f32 && mesh.position_form == PositionForm::quantised) {
+            ++counts.wide_meshes;
+        }
     }
     for (const MaterialRecord& material : document.materials) {
         if (material.flags & mesh_format::kAlphaMask) ++counts.masked_materials;
@@ -173,17 +177,26 @@ std::string summary(const Document& document, std::uint64_t file_bytes) {
     const Counts counts = count(document);
     const std::uint64_t data_bytes =
         counts.vertex_bytes + counts.index_bytes + document.texels.size();
+    const std::string wide =
+        counts.wide_meshes == 0
+            ? ""
+            : fmt::format("  {} meshes keep UVs of 32 bits: 16 would miss 1/8 texel\n",
+                          counts.wide_meshes);
     return fmt::format(
-        "  {} vertices, {} triangles, {} meshes of {} chunks, {} materials ({} alpha-masked), {} "
-        "textures\n"
-        "  {} bytes: vertices {}, indices {}, texels {}, tables {}\n"
-        "  largest errors: position {}; frame {:.4f} degrees (mean {:.4f}); UV {:.3f} texel\n",
-        grouped(counts.vertices), grouped(counts.triangles), document.meshes.size(),
-        document.chunks.size(), document.materials.size(), counts.masked_materials,
-        document.textures.size(), grouped(file_bytes), grouped(counts.vertex_bytes),
-        grouped(counts.index_bytes), grouped(document.texels.size()),
-        grouped(file_bytes - data_bytes), position_error(document, counts),
-        document.scene.frame_error_max, document.scene.frame_error_mean, document.scene.uv_error);
+               "  {} vertices, {} triangles, {} meshes of {} chunks, {} materials ({} "
+               "alpha-masked), {} "
+               "textures\n"
+               "  {} bytes: vertices {}, indices {}, texels {}, tables {}\n"
+               "  largest errors: position {}; frame {:.4f} degrees (mean {:.4f}); UV {:.3f} "
+               "texel\n",
+               grouped(counts.vertices), grouped(counts.triangles), document.meshes.size(),
+               document.chunks.size(), document.materials.size(), counts.masked_materials,
+               document.textures.size(), grouped(file_bytes), grouped(counts.vertex_bytes),
+               grouped(counts.index_bytes), grouped(document.texels.size()),
+               grouped(file_bytes - data_bytes), position_error(document, counts),
+               document.scene.frame_error_max, document.scene.frame_error_mean,
+               document.scene.uv_error) +
+           wide;
 }
 
 std::string inspection(const Document& document, std::uint64_t file_bytes) {

@@ -66,7 +66,8 @@ TEST(Chunks, KeepEveryTriangleAndItsWinding) {
     const bake::FramedMesh sheet = make_sheet(300);
     std::vector<Face> before, after;
     add_faces(sheet, before);
-    for (const bake::ChunkedMesh& piece : bake::make_chunks(sheet)) add_faces(piece.mesh, after);
+    for (const bake::ChunkedMesh& piece : bake::make_chunks(sheet, {}))
+        add_faces(piece.mesh, after);
     std::sort(before.begin(), before.end());
     std::sort(after.begin(), after.end());
     EXPECT_EQ(before, after);
@@ -74,7 +75,7 @@ TEST(Chunks, KeepEveryTriangleAndItsWinding) {
 
 TEST(Chunks, StayWithinTheLimitsAndFollowEachOther) {
     const bake::FramedMesh sheet = make_sheet(300);
-    const auto pieces = bake::make_chunks(sheet);
+    const auto pieces = bake::make_chunks(sheet, {});
     EXPECT_EQ(pieces.size(), 2u);  // 90,601 vertices
     for (const bake::ChunkedMesh& piece : pieces) {
         EXPECT_LE(piece.mesh.positions.size(), mesh_format::kMaxMeshVertices);
@@ -98,7 +99,7 @@ TEST(Chunks, StayWithinTheLimitsAndFollowEachOther) {
 TEST(Chunks, AreTightInSpace) {
     // 180,000 triangles are halved nine times: chunks of 1/16 by 1/32 of the sheet.
     const bake::FramedMesh sheet = make_sheet(300);
-    for (const bake::ChunkedMesh& piece : bake::make_chunks(sheet)) {
+    for (const bake::ChunkedMesh& piece : bake::make_chunks(sheet, {})) {
         for (const bake::Chunk& chunk : piece.chunks) {
             glm::vec3 low(1e9f), high(-1e9f);
             for (std::uint32_t i = 0; i < chunk.index_count; ++i) {
@@ -113,6 +114,22 @@ TEST(Chunks, AreTightInSpace) {
     }
 }
 
+TEST(Chunks, ShareAMeshOnlyWhere16BitsHoldTheirUvs) {
+    bake::FramedMesh sheet = make_sheet(100);
+    for (glm::vec2& uv : sheet.uvs) uv *= 50.0f;  // a lattice of 1/4096 spans 16
+    const bake::UvBudget budget{.texels = 1024};
+    const auto pieces = bake::make_chunks(sheet, budget);
+    EXPECT_GT(pieces.size(), 10u);
+    EXPECT_LT(pieces.size(), 40u);
+    const auto packed =
+        bake::quantise(pieces, {&budget, 1},
+                       {mesh_format::FrameForm::quat48, mesh_format::PositionForm::quantised});
+    for (const mesh_format::MeshRecord& mesh : packed.meshes) {
+        EXPECT_EQ(mesh.uv_form, mesh_format::UvForm::quantised);
+    }
+    EXPECT_LE(packed.scene.uv_error, 0.125f);
+}
+
 bake::PackedGeometry pack(const std::vector<bake::ChunkedMesh>& pieces) {
     const bake::UvBudget budget;
     return bake::quantise(pieces, {&budget, 1},
@@ -120,7 +137,7 @@ bake::PackedGeometry pack(const std::vector<bake::ChunkedMesh>& pieces) {
 }
 
 TEST(Chunks, SpheresHoldTheirVertices) {
-    const auto pieces = bake::make_chunks(make_sheet(100));
+    const auto pieces = bake::make_chunks(make_sheet(100), {});
     const bake::PackedGeometry packed = pack(pieces);
     std::size_t record = 0;
     for (const bake::ChunkedMesh& piece : pieces) {
@@ -138,7 +155,7 @@ TEST(Chunks, SpheresHoldTheirVertices) {
 }
 
 TEST(Chunks, CamerasThatAConeRejectsSeeNoFrontFace) {
-    const auto pieces = bake::make_chunks(make_sheet(100));
+    const auto pieces = bake::make_chunks(make_sheet(100), {});
     const bake::PackedGeometry packed = pack(pieces);
     std::mt19937 random(3);
     std::uniform_real_distribution<float> coordinate(-2.0f, 3.0f);
