@@ -29,10 +29,11 @@ FrameSettings ViewerState::settings() const {
 }
 
 bool ViewerState::apply(const Input& input, double seconds, float aspect) {
+    // First what went on in the meantime, so that a reset has the last word.
     bool changed = light_moves_;
     if (light_moves_) light_seconds_ += seconds;
-    for (const Command& command : input.commands) changed |= apply(command, aspect);
     changed |= fly(input, static_cast<float>(seconds));
+    for (const Command& command : input.commands) changed |= apply(command, aspect);
     return changed;
 }
 

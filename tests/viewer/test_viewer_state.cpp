@@ -120,6 +120,14 @@ TEST(ViewerState, ResetBringsBackTheExactCameraAndLight) {
     EXPECT_FALSE(viewer.apply({}, 1.0)) << "the light still moves";
 }
 
+TEST(ViewerState, AKeyLetGoJustBeforeAResetDoesNotMoveTheCameraAfterIt) {
+    Viewer viewer;
+    Input input = flight({0.0f, 0.0f, 1.0f});
+    input.commands = {{CommandKind::reset}};
+    viewer.apply(input, 1.0);
+    EXPECT_EQ(viewer.camera().position, Viewer().camera().position);
+}
+
 TEST(ViewerState, FliesAtTheSameSpeedWhateverTheFrameRate) {
     const Input forward = flight({0.0f, 0.0f, 1.0f});
     const float distance = distance_flown(forward, 1000);
