@@ -236,7 +236,28 @@ constexpr std::array<const char*, kSectionCount> kSectionNames{
     "vertices", "indices", "texels", "encoded vertices", "encoded indices"};
 static_assert(kSectionNames.back() != nullptr);
 
-/// The sections of a file whose header has been checked.
+constexpr std::uint64_t align_section(std::uint64_t offset) {
+    return (offset + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
+}
+
+/// The sections follow each other, and nothing but zeros lies between them.
+void check_sections(const Checker& check, std::span<const std::byte> bytes, const Header& header) {
+    std::uint64_t end = sizeof(Header);
+    for (std::size_t k = 0; k < kSectionCount; ++k) {
+        const Section& section = header.sections[k];
+        if (section.offset != align_section(end) ||
+            !in_range(section.offset, section.size, bytes.size())) {
+            check.fail(std::string("section ") + kSectionNames[k] + " is not where it belongs");
+        }
+        for (const std::byte padding : bytes.subspan(end, section.offset - end)) {
+            check.require(padding == std::byte{0}, "is altered: a byte between two sections");
+        }
+        end = section.offset + section.size;
+    }
+    check.require(end == bytes.size(), "is altered: bytes after the last section");
+}
+
+/// The sections of a file whose header and their places have been checked.
 class SectionReader {
  public:
     SectionReader(const Checker& check, std::span<const std::byte> bytes, const Header& header)
@@ -245,10 +266,6 @@ class SectionReader {
     std::span<const std::byte> bytes(SectionKind kind) const {
         const auto k = static_cast<std::size_t>(kind);
         const Section& section = header_.sections[k];
-        if (section.offset % kSectionAlignment != 0 ||
-            !in_range(section.offset, section.size, bytes_.size())) {
-            check_.fail(std::string("section ") + kSectionNames[k] + " lies outside the file");
-        }
         const auto contents = bytes_.subspan(section.offset, section.size);
         if (checksum(contents) != section.checksum) {
             check_.fail(std::string("is altered: wrong checksum of section ") + kSectionNames[k]);
@@ -272,10 +289,6 @@ class SectionReader {
     std::span<const std::byte> bytes_;
     const Header& header_;
 };
-
-constexpr std::uint64_t align_section(std::uint64_t offset) {
-    return (offset + kSectionAlignment - 1) / kSectionAlignment * kSectionAlignment;
-}
 
 }  // namespace
 
@@ -329,6 +342,7 @@ Document parse(std::span<const std::byte> bytes, std::string_view name) {
     assert(reinterpret_cast<std::uintptr_t>(bytes.data()) % 16 == 0);
     const Checker checker(name);
     const Header header = checked_header(checker, bytes);
+    check_sections(checker, bytes, header);
     const SectionReader sections(checker, bytes, header);
 
     const auto scenes = sections.records<SceneRecord>(SectionKind::scene);

@@ -1,7 +1,8 @@
 // The byte layout of a .cw2mesh file: everything that is written to disk is declared here, once.
 //
-// A file is a Header followed by its sections, each aligned to kSectionAlignment and zero-padded
-// up to it. All numbers are little-endian. Section k of the header's table has SectionKind k:
+// A file is a Header followed by its sections in their order, each aligned to kSectionAlignment and
+// zero-padded up to it. All numbers are little-endian. Section k of the header's table has
+// SectionKind k:
 //
 //   scene      one SceneRecord
 //   meshes     MeshRecord[]

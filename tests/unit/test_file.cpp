@@ -238,26 +238,15 @@ TEST(File, BytesAfterTheEndAreRefused) {
     EXPECT_NE(complaint(bytes), "");
 }
 
-/// Whether byte `at` belongs to the header or to a section.
-bool is_content(const Header& header, std::size_t at) {
-    return at < sizeof header ||
-           std::any_of(header.sections.begin(), header.sections.end(),
-                       [at](const Section& section) {
-                           return at >= section.offset && at < section.offset + section.size;
-                       });
-}
-
-TEST(File, EveryAlteredByteIsRefusedUnlessItOnlyPads) {
+TEST(File, EveryAlteredByteIsRefused) {
     for (const bool encoded : {false, true}) {
         SmallScene scene;
         if (encoded) scene.encode();
         Bytes bytes = written(scene);
-        Header header;
-        std::memcpy(&header, bytes.data(), sizeof header);
         for (std::size_t at = 0; at < bytes.size(); ++at) {
             for (const unsigned change : {0x01u, 0x80u, 0xFFu}) {
                 bytes[at] ^= static_cast<std::byte>(change);
-                EXPECT_EQ(complaint(bytes).starts_with("the file: "), is_content(header, at));
+                EXPECT_TRUE(complaint(bytes).starts_with("the file: ")) << at;
                 bytes[at] ^= static_cast<std::byte>(change);
             }
         }
@@ -293,6 +282,11 @@ const Hostile kHostileHeaders[] = {
     {"section_offset_overflows",
      [](Forgery& f) { f.section(SectionKind::vertices).offset = kHuge - 63; }},
     {"section_size_overflows", [](Forgery& f) { f.section(SectionKind::vertices).size = kHuge; }},
+    {"sections_overlap",
+     [](Forgery& f) {
+         f.section(SectionKind::encoded_indices) = f.section(SectionKind::encoded_vertices);
+         f.section(SectionKind::encoded_vertices) = f.section(SectionKind::vertices);
+     }},
     {"section_not_aligned", [](Forgery& f) { f.section(SectionKind::strings).offset += 4; }},
     {"no_scene", [](Forgery& f) { f.section(SectionKind::scene).size = 0; }},
     {"half_a_scene", [](Forgery& f) { f.section(SectionKind::scene).size /= 2; }},
