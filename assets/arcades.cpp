@@ -76,7 +76,7 @@ void add_archivolt(Mesh& stones, Mesh& bead, float springing) {
                            return vec3(on_arch(s) * radius + vec2(0.0f, springing),
                                        kHalfDepth + kRelief);
                        },
-                       [](float s, float t) { return vec2(2.0f * mirrored(s), t); }));
+                       [](float s, float t) { return vec2(2.0f * mirrored(s), 0.25f * t); }));
     append(bead, patch(
                      kArchSegments, 4,
                      [&](float s, float t) {
@@ -132,7 +132,7 @@ void add_arch(Model& model, const Bay& bay, float springing, float top, float u_
                    return vec3(on_arch(s) * kArchRadius + vec2(0.0f, springing),
                                mix(-kHalfSoffit, kHalfSoffit, t));
                },
-               [](float s, float t) { return vec2(2.0f * mirrored(s), 3.0f * t); }),
+               [](float s, float t) { return vec2(2.0f * mirrored(s), 0.75f * t); }),
            bay.world_from_bay);
 }
 
@@ -184,7 +184,7 @@ void add_column(Model& model, const mat4& world_from_column, float height, float
         return vec3(radius * std::sin(angle), mix(kFoot, shaft_top, v), radius * std::cos(angle));
     };
     append(model.part("shafts", "limestone"),
-           patch(48, twist == 0.0f ? 10 : 20, shaft,
+           patch(48, twist == 0.0f ? 8 : 16, shaft,
                  [&](float u, float v) { return vec2(u, mix(kFoot, shaft_top, v)); }),
            world_from_column);
     const Profile ring{curve({{0.145f, -0.035f}, {0.17f, -0.015f}, {0.145f, 0.005f}}, 4)};
@@ -237,8 +237,8 @@ void add_balustrade(Model& model, const mat4& world_from_bay) {
                                   {0.034f, 0.56f},
                                   {0.032f, 0.64f},
                                   {0.045f, 0.66f}},
-                                 2),
-                           curve({{0.045f, 0.66f}, {0.060f, 0.68f}, {0.045f, 0.70f}}, 2),
+                                 1),
+                           curve({{0.045f, 0.66f}, {0.060f, 0.68f}, {0.045f, 0.70f}}, 1),
                            {{0.068f, 0.70f}, {0.068f, 0.76f}}};
     const Mesh turned = lathe(baluster, 10, 1.0f, 1.0f);
     constexpr int kCount = 7;

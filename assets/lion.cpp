@@ -71,9 +71,9 @@ float eyes(float d, vec3 q) {
     const float almond =
         glm::length(vec2(in_eye.x, std::fabs(in_eye.y) + kArc - kHalfHeight)) - kArc;
     const float from_centre = glm::length(q - centre);
-    const float lids = cut(from_centre - (kBall + 0.020f), almond, 0.014f);
+    const float lids = cut(from_centre - (kBall + 0.020f), almond, 0.022f);
     d = join(d, lids, 0.035f);
-    d = std::fmin(d, from_centre - kBall);
+    d = join(d, from_centre - kBall, 0.008f);
     return cut(d, glm::length(q - centre - vec3(-0.004f, 0.010f, kBall + 0.004f)) - 0.021f, 0.008f);
 }
 
@@ -274,7 +274,7 @@ Field lion_field() {
 Mesh lion_head() {
     // The planes are close where the face is.
     constexpr float kFine = 0.0145f;
-    constexpr float kCoarse = 0.0315f;
+    constexpr float kCoarse = 0.034f;
     const std::vector<float> x = planes(-1.1f, 1.1f, -0.28f, 0.28f, kFine, kCoarse);
     const std::vector<float> y = planes(-kLionBottom - 0.05f, 1.05f, -0.34f, 0.30f, kFine, kCoarse);
     const std::vector<float> z = planes(-1.0f, 0.75f, 0.30f, 0.75f, kFine, kCoarse);

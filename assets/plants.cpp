@@ -56,12 +56,12 @@ void add_pot(Model& model, const mat4& world_from_pot, float height) {
                              {0.33f * h, 0.30f * h},
                              {0.39f * h, 0.62f * h},
                              {0.36f * h, 0.84f * h}},
-                            4),
+                            2),
                       curve({{0.36f * h, 0.84f * h},
                              {0.44f * h, 0.90f * h},
                              {0.43f * h, 0.98f * h},
                              {0.40f * h, h}},
-                            3),
+                            2),
                       {{0.40f * h, h}, {0.36f * h, 0.99f * h}},
                       {{0.36f * h, 0.99f * h}, {0.35f * h, 0.88f * h}}};
     Mesh mesh = lathe(pot, 24, 2.0f, 1.0f);
@@ -95,8 +95,8 @@ void add_orange_tree(Model& model, vec3 at, float scale, std::uint32_t seed) {
     }
     const Mesh orange = lathe(
         {curve({{0.0f, -0.042f}, {0.03f, -0.03f}, {0.044f, 0.0f}, {0.03f, 0.03f}, {0.0f, 0.040f}},
-               2)},
-        12, 1.0f, 1.0f);
+               1)},
+        10, 1.0f, 1.0f);
     for (int i = 0; i < 11; ++i) {
         const vec3 out = glm::normalize(on_sphere(random) - vec3(0.0f, 0.15f, 0.0f));
         append(model.part("trees", "orange_peel"), orange,
@@ -119,7 +119,7 @@ void add_palm(Model& model, vec3 at, float scale, std::uint32_t seed) {
         const float length = scale * random.range(0.75f, 0.95f);
         const vec3 start = heart + out * 0.03f * scale;
         const auto spine = [=](float t) {
-            const float bend = lean + 0.95f * t * (0.5f + age);
+            const float bend = lean + 0.62f * t * (0.5f + age);
             return start + length * t * (out * std::sin(bend) + vec3(0, std::cos(bend), 0));
         };
         const vec3 side = glm::cross(out, vec3(0, 1, 0));

@@ -69,7 +69,7 @@ void add_tile(Mesh& mesh, const Wing& wing, float s, float d, Random& random) {
     const float skew = random.range(-0.012f, 0.012f);
     const float lift = random.range(0.0f, 0.012f);
     append(mesh, patch(
-                     8, 1,
+                     6, 1,
                      [&](float u, float v) {
                          const float radius = mix(0.108f, 0.086f, v);
                          const float angle = kPi * (1.0f - u);
@@ -103,7 +103,7 @@ void add_wing(Model& model, const Wing& wing, std::uint32_t seed) {
     for (int i = 0; i < count; ++i) {
         const float s = wing.low(kRidge) + length * static_cast<float>(i) / count;
         append(tiles, patch(
-                          1, 8,
+                          1, 6,
                           [&](float u, float v) {
                               const float radius = mix(0.14f, 0.125f, u);
                               const float angle = kPi * v;

@@ -124,9 +124,9 @@ Texel water(vec2 uv) {
 std::vector<TextureSet> ceramic_textures() {
     return {
         {.name = "azulejo", .size = 1024, .extent = vec2(0.8f), .texel = azulejo},
-        {.name = "terracotta", .size = 1024, .extent = vec2(1.0f), .texel = terracotta},
+        {.name = "terracotta", .size = 512, .extent = vec2(1.0f), .texel = terracotta},
         {.name = "paver", .size = 1024, .extent = vec2(1.8f), .texel = paver},
-        {.name = "water", .size = 1024, .extent = vec2(1.5f), .roughness = false, .texel = water},
+        {.name = "water", .size = 512, .extent = vec2(1.5f), .roughness = false, .texel = water},
     };
 }
 

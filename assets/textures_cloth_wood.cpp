@@ -112,12 +112,12 @@ std::vector<TextureSet> cloth_and_wood_textures() {
          .metalness = true,
          .texel = [=](vec2 uv) { return curtain(uv, crimson, gold, true); }},
         {.name = "curtain_teal",
-         .size = 1024,
+         .size = 512,
          .extent = vec2(0.9f),
          .normal = false,
          .texel = [=](vec2 uv) { return curtain(uv, teal, pale, false); }},
-        {.name = "carpet", .size = 1024, .extent = vec2(1.2f), .roughness = false, .texel = carpet},
-        {.name = "wood", .size = 1024, .extent = vec2(1.2f), .texel = wood},
+        {.name = "carpet", .size = 512, .extent = vec2(1.2f), .roughness = false, .texel = carpet},
+        {.name = "wood", .size = 512, .extent = vec2(1.2f), .texel = wood},
     };
 }
 

@@ -134,8 +134,8 @@ Texel limestone(vec2 uv) {
 /// Red and cream stones, each with a carved leaf that leans towards +u, so that a mirrored half
 /// is seen as such. u runs along the arch, v from the opening outward.
 Texel voussoir(vec2 uv) {
-    const vec2 extent(0.84f, 0.21f);
-    const Block stone = block_at(uv, extent, {4, 1}, 0.0f, 301);
+    const vec2 extent(0.84f);
+    const Block stone = block_at(uv, extent, {4, 4}, 0.0f, 301);
     const bool red = static_cast<int>(uv.x * 4.0f) % 2 == 0;
     const vec2 p = (stone.local - 0.5f * stone.size) / stone.size.y;
     // A leaf along the diagonal: pointed ellipse with a midrib and ribs that run off it.
@@ -147,8 +147,8 @@ Texel voussoir(vec2 uv) {
     const float rib = std::fabs(std::sin((leaf.x - 0.8f * std::fabs(leaf.y)) * 26.0f));
     const float midrib = smooth_step(0.03f, 0.0f, std::fabs(leaf.y));
     const float carve = inside * (0.75f + 0.18f * rib + 0.3f * midrib);
-    const float grain = fbm(uv * vec2(64.0f, 16.0f), 64, 4, 303);
-    const float wear = fbm(uv * vec2(8.0f, 2.0f), 8, 5, 305);
+    const float grain = fbm(uv * 64.0f, 64, 4, 303);
+    const float wear = fbm(uv * 8.0f, 8, 5, 305);
     const float in_stone = smooth_step(0.0025f, 0.005f, stone.edge + 0.0006f * grain);
     const float border =
         smooth_step(0.010f, 0.016f, stone.edge) * (1.0f - smooth_step(0.018f, 0.026f, stone.edge));
@@ -211,9 +211,9 @@ std::vector<TextureSet> stone_textures() {
         {.name = "marble_tile", .size = 1024, .extent = vec2(2.4f), .texel = marble_tile},
         {.name = "flagstone", .size = 1024, .extent = vec2(2.4f), .texel = flagstone},
         {.name = "limestone", .size = 1024, .extent = vec2(1.0f), .texel = limestone},
-        {.name = "voussoir", .size = 1024, .extent = vec2(0.84f, 0.21f), .texel = voussoir},
+        {.name = "voussoir", .size = 1024, .extent = vec2(0.84f), .texel = voussoir},
         {.name = "plaster", .size = 1024, .extent = vec2(3.0f), .texel = plaster},
-        {.name = "brick", .size = 1024, .extent = vec2(1.44f), .texel = brick},
+        {.name = "brick", .size = 512, .extent = vec2(1.44f), .texel = brick},
     };
 }
 
