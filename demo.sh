@@ -4,14 +4,18 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 
+court='--camera-position 8.5,2.6,2.2 --camera-target -2,2.3,-1 --light-position 3,6,3'
+lion='--camera-position 2.1,2.5,2.5 --camera-target 0,2.3,0 --fov 50 --light-position 3,4,3'
+bright='--light-color 3.5,3.5,3.3'
 # picture | what cw2 is told besides the scene
-pictures='
-courtyard      | --time 0
-courtyard-dusk | --time 2.5
-sculpture      | --time 0 --camera-position 4,2,4 --camera-target 0,1.5,0
-sculpture-dusk | --time 2.5 --camera-position 4,2,4 --camera-target 0,1.5,0
-normal         | --view normal
-'
+pictures="
+overview       | --light-color 3,3,3
+courtyard      | $court $bright
+courtyard-5s   | $court $bright --time 5.4
+lion           | $lion $bright --time 0.9
+lion-5s        | $lion $bright --time 5.4
+normal         | $court --view normal
+"
 
 model=build/release/assets/demo/courtyard.obj
 scene=build/demo/courtyard.cw2mesh
