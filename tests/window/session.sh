@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # A display of its own, a window of cw2 in it, and a user; sourced by window_test.sh, whose $work
 # is where everything is written. Nothing here waits for a time, only for what should happen.
 
