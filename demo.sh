@@ -47,7 +47,9 @@ while IFS='|' read -r name arguments; do
     timed "$picture" "$cw2" "$scene" --output "$picture" "${arguments[@]}" </dev/null
 done <<<"$pictures"
 
-echo "To open the window: $PWD/$cw2 $PWD/$scene"
+read -ra arguments <<<"$court $bright"
+window=("$cw2" "$scene" "${arguments[@]}")
+echo "To open the window: cd $PWD && ${window[*]}"
 if [[ -t 1 && -n ${DISPLAY:-} ]]; then
-    exec "$cw2" "$scene"
+    exec "${window[@]}"
 fi
