@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <fstream>
-#include <map>
 #include <numeric>
 #include <random>
-#include <stdexcept>
 #include <unordered_map>
 
+#include "cw2-bake/normals.h"
+#include "cw2-bake/read_obj.h"
 #include "cw2-bake/tangents.h"
 
 namespace oracle {
@@ -66,47 +64,18 @@ std::vector<glm::vec4> our_tangents(const IndexedMesh& mesh) {
 }
 
 std::vector<CornerMesh> read_obj_by_material(const std::filesystem::path& path) {
-    std::ifstream file(path);
-    std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;
-    std::vector<glm::vec2> uvs;
-    std::map<std::string, CornerMesh> meshes;
-    CornerMesh* mesh = nullptr;
-    std::string line;
-    while (std::getline(file, line)) {
-        std::array<double, 9> numbers{};
-        std::size_t count = 0;
-        const std::size_t space = line.find(' ');
-        const std::string word = line.substr(0, space);
-        if (word == "usemtl") {
-            mesh = &meshes[line.substr(space + 1)];
-            mesh->name = line.substr(space + 1);
-            continue;
-        }
-        if (word != "v" && word != "vt" && word != "vn" && word != "f") continue;
-        const char* at = line.data() + space;
-        const char* const end = line.data() + line.size();
-        while (at != end && count < numbers.size()) {
-            const auto [next, error] = std::from_chars(at + 1, end, numbers[count++]);
-            if (error != std::errc{}) throw std::runtime_error("not understood: " + line);
-            at = next;
-        }
-        const std::size_t expected = word == "f" ? 9 : word == "vt" ? 2 : 3;
-        if (at != end || count != expected) throw std::runtime_error("not understood: " + line);
-        if (word == "v") positions.emplace_back(numbers[0], numbers[1], numbers[2]);
-        if (word == "vn") normals.emplace_back(numbers[0], numbers[1], numbers[2]);
-        if (word == "vt") uvs.emplace_back(numbers[0], numbers[1]);
-        if (word != "f") continue;
-        if (mesh == nullptr) throw std::runtime_error("face before usemtl: " + line);
-        for (std::size_t corner = 0; corner < 9; corner += 3) {
-            mesh->positions.push_back(positions.at(std::size_t(numbers[corner]) - 1));
-            mesh->uvs.push_back(uvs.at(std::size_t(numbers[corner + 1]) - 1));
-            mesh->normals.push_back(normals.at(std::size_t(numbers[corner + 2]) - 1));
-        }
+    bake::SourceScene scene = bake::read_obj(path, [](const std::string&) {});
+    bake::generate_normals(scene);
+    std::vector<CornerMesh> meshes(scene.materials.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) meshes[i].name = scene.materials[i].name;
+    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
+        const bake::Corner& corner = scene.corners[i];
+        CornerMesh& mesh = meshes[scene.triangle_material[i / 3]];
+        mesh.positions.push_back(scene.positions[corner.position]);
+        mesh.normals.push_back(scene.normals[corner.normal]);
+        mesh.uvs.push_back(corner.uv == bake::kAbsent ? glm::vec2(0.0f) : scene.uvs[corner.uv]);
     }
-    std::vector<CornerMesh> result;
-    for (auto& [name, of_material] : meshes) result.push_back(std::move(of_material));
-    return result;
+    return meshes;
 }
 
 }  // namespace oracle

@@ -40,8 +40,7 @@ std::vector<CornerMesh> small_meshes();
 /// The meshes for the living oracle only, about 580,000 corners in all.
 std::vector<CornerMesh> large_meshes();
 
-/// One mesh a material of an OBJ that holds v, vt, vn, usemtl and triangles v/vt/vn only; throws
-/// std::runtime_error for anything else.
+/// One mesh a material of an OBJ, as the bake reads it.
 std::vector<CornerMesh> read_obj_by_material(const std::filesystem::path& path);
 
 }  // namespace oracle

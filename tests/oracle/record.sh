@@ -5,5 +5,5 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 build=${1:-$here/../../build/release}
 sh "$here/install_mikktspace.sh" "$build/oracle"
-"$build/bin/tangents_oracle" record "$here/recorded_tangents.bin" "$build/oracle" "" \
+"$build/bin/tangents_oracle" record "$here/recorded_tangents.bin" "$build/oracle" "" "" \
     "$(command -v node)" "$here/mikktspace.mjs" "$build/oracle"

@@ -1,8 +1,9 @@
-// tangents_oracle compare|record RECORDED WORK_DIR OBJ [NODE SCRIPT PACKAGE_DIR]
+// tangents_oracle compare|record RECORDED WORK_DIR DEMO_OBJ OBJ [NODE SCRIPT PACKAGE_DIR]
 //
 // Compares bake::generate_tangents, corner by corner, with the npm package `mikktspace`: with the
-// package itself where PACKAGE_DIR holds it, else with the results for the small meshes that
-// `record` once wrote to the file RECORDED. Exits 1 if they differ.
+// package itself (both OBJs, too; OBJ may be missing) where PACKAGE_DIR holds it, else with the
+// results for the small meshes that `record` once wrote to the file RECORDED. Exits 1 if they
+// differ.
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -26,6 +27,7 @@ struct Arguments {
     std::string mode;
     std::filesystem::path recorded;
     std::filesystem::path work_dir;
+    std::filesystem::path demo_obj;
     std::filesystem::path obj;
     oracle::Package package;
 };
@@ -154,6 +156,8 @@ int compare_all(const Arguments& arguments) {
     if (std::filesystem::exists(arguments.package.dir / "node_modules" / "mikktspace")) {
         std::printf("oracle: the npm package mikktspace, live\n");
         std::ranges::move(oracle::large_meshes(), std::back_inserter(meshes));
+        std::ranges::move(oracle::read_obj_by_material(arguments.demo_obj),
+                          std::back_inserter(meshes));
         if (std::filesystem::exists(arguments.obj))
             std::ranges::move(oracle::read_obj_by_material(arguments.obj),
                               std::back_inserter(meshes));
@@ -174,9 +178,9 @@ int compare_all(const Arguments& arguments) {
 
 int main(int count, char** values) {
     try {
-        if (count != 5 && count != 8) throw std::runtime_error("wrong arguments");
-        Arguments arguments{values[1], values[2], values[3], values[4], {}};
-        if (count == 8) arguments.package = {values[5], values[6], values[7]};
+        if (count != 6 && count != 9) throw std::runtime_error("wrong arguments");
+        Arguments arguments{values[1], values[2], values[3], values[4], values[5], {}};
+        if (count == 9) arguments.package = {values[6], values[7], values[8]};
         if (arguments.mode == "compare") return compare_all(arguments);
         if (arguments.mode != "record") throw std::runtime_error("wrong arguments");
         record(arguments);
