@@ -52,7 +52,7 @@ TextureSet make_textures(const Settings& settings, const SourceScene& scene, con
         return {.textures = {}, .materials = std::vector<MaterialTextures>(scene.materials.size())};
     }
     ProgressBar bar(!settings.quiet);
-    return bake_textures(scene.materials, warn,
+    return bake_textures(scene.materials, settings.textures, warn,
                          [&bar](double done, std::string_view name) { bar.update(done, name); });
 }
 
@@ -128,7 +128,7 @@ Tables make_tables(const std::vector<SourceMaterial>& materials, TextureSet& set
              .width = texture.width,
              .height = texture.height,
              .mip_count = mesh_format::full_mip_count(texture.width, texture.height),
-             .reserved = 0,
+             .psnr = texture.psnr,
              .offset = tables.texels.size(),
              .size = texture.payload.size()});
         tables.texels.insert(tables.texels.end(), texture.payload.begin(), texture.payload.end());

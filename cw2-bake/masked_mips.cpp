@@ -10,15 +10,6 @@
 namespace bake {
 namespace {
 
-/// The smallest byte that a shader sees at or above `cutoff`.
-std::uint32_t cutoff_byte(float cutoff) {
-    std::uint32_t byte = 0;
-    while (byte < 255 && static_cast<float>(byte) / 255.0f < cutoff) {
-        ++byte;
-    }
-    return byte;
-}
-
 using mesh_format::TextureFormat;
 
 /// How the values of a level become a mask: those from `smallest_shown` on are shown.
@@ -164,6 +155,14 @@ std::byte* level_bytes(std::vector<std::byte>& payload, TextureFormat format,
 }
 
 }  // namespace
+
+std::uint32_t cutoff_byte(float cutoff) {
+    std::uint32_t byte = 0;
+    while (byte < 255 && static_cast<float>(byte) / 255.0f < cutoff) {
+        ++byte;
+    }
+    return byte;
+}
 
 float shown_from(float cutoff) {
     return (static_cast<float>(cutoff_byte(cutoff)) - 0.5f) / 255.0f;

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <span>
 
+#include "cw2-bake/block_compression.h"
 #include "cw2-bake/mip_chain.h"
 #include "cw2-bake/texels.h"
 
@@ -31,7 +32,7 @@ const Image* load(const std::optional<TextureMap>& map, ImageCache& images, Imag
 
 /// Shrinks a texture all of whose texels are equal to one of them.
 void collapse_constant(Texture& texture) {
-    const std::size_t step = mesh_format::texel_bytes(texture.format);
+    const std::size_t step = mesh_format::block_bytes(texture.format);
     const std::size_t bytes = std::size_t{texture.width} * texture.height * step;
     const std::byte* level = texture.payload.data();
     if (std::memcmp(level, level + step, bytes - step) != 0) {
@@ -161,7 +162,7 @@ const Image& ImageCache::get(const std::filesystem::path& file) {
                                   : images_.emplace(file, read_image(file)).first->second;
 }
 
-ImageResult make_textures(const ImageRequest& request, ImageCache& images) {
+ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCache& images) {
     ImageResult result;
     switch (request.kind) {
         case ImageRequest::Kind::surface:
@@ -174,6 +175,10 @@ ImageResult make_textures(const ImageRequest& request, ImageCache& images) {
         case ImageRequest::Kind::bump:
             make_normals(request, images, result);
             break;
+    }
+    if (mode == TextureMode::bc) {
+        if (result.texture) compress_to_blocks(*result.texture);
+        if (result.alpha_mask) compress_to_blocks(*result.alpha_mask, request.alpha_cutoff);
     }
     return result;
 }

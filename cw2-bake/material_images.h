@@ -53,9 +53,9 @@ class ImageCache {
     std::map<std::filesystem::path, Image> images_;
 };
 
-/// Reads and filters. A map whose image cannot be used counts as absent. What says nothing makes no
-/// texture: a mask that hides nothing, a normal map that is flat. An image of one value becomes
-/// 1 x 1.
-ImageResult make_textures(const ImageRequest& request, ImageCache& images);
+/// Reads, filters, and in mode bc compresses. A map whose image cannot be used counts as absent.
+/// What says nothing makes no texture: a mask that hides nothing, a normal map that is flat. An
+/// image of one value becomes 1 x 1.
+ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCache& images);
 
 }  // namespace bake

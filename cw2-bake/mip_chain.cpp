@@ -135,7 +135,7 @@ std::vector<std::byte> filter_chain(mesh_format::TextureFormat format, const Tex
     TexelSource rows = source;
     Level level;
     for (std::uint32_t i = 0;; ++i) {
-        const std::size_t row_bytes = std::size_t{rows.width} * mesh_format::texel_bytes(format);
+        const std::size_t row_bytes = std::size_t{rows.width} * mesh_format::block_bytes(format);
         TexelSource encoding = rows;
         encoding.read_row = [&](std::uint32_t y, std::span<float> texels) {
             rows.read_row(y, texels);

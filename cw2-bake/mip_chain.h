@@ -61,6 +61,9 @@ std::vector<std::byte> filter_mask(const TexelSource& source, float cutoff);
 /// them, so that no filter draws a hidden colour into sight. `clamp`: the texture does not repeat.
 std::vector<std::byte> filter_masked_color(const TexelSource& source, bool clamp);
 
+/// The smallest byte that a shader sees at or above `cutoff`.
+std::uint32_t cutoff_byte(float cutoff);
+
 /// The smallest value that is at or above `cutoff` once it is stored in 8 bits.
 float shown_from(float cutoff);
 

@@ -45,6 +45,12 @@ const char* name_of(TextureFormat format) {
             return "rgba8_unorm";
         case TextureFormat::rgba8_srgb:
             return "rgba8_srgb";
+        case TextureFormat::bc1_srgb:
+            return "bc1_srgb";
+        case TextureFormat::bc4_unorm:
+            return "bc4_unorm";
+        case TextureFormat::bc5_unorm:
+            return "bc5_unorm";
     }
     return "";
 }
@@ -154,11 +160,32 @@ void list_materials(const Document& document, std::string& out) {
 void list_textures(const Document& document, std::string& out) {
     for (std::size_t i = 0; i < document.textures.size(); ++i) {
         const TextureRecord& texture = document.textures[i];
-        fmt::format_to(std::back_inserter(out), "texture {} '{}': {} x {} {}, {} bytes{}\n", i,
-                       document.text(texture.name), texture.width, texture.height,
-                       name_of(texture.format), grouped(texture.size),
-                       texture.flags & mesh_format::kClampToEdge ? ", clamped" : "");
+        fmt::format_to(
+            std::back_inserter(out), "texture {} '{}': {} x {} {}, {} bytes{}{}\n", i,
+            document.text(texture.name), texture.width, texture.height, name_of(texture.format),
+            grouped(texture.size), texture.flags & mesh_format::kClampToEdge ? ", clamped" : "",
+            texture.psnr > 0.0f ? fmt::format(", {:.1f} dB in blocks", texture.psnr) : "");
     }
+}
+
+bool in_blocks(const TextureRecord& texture) {
+    return mesh_format::block_extent(texture.format) > 1;
+}
+
+/// Which textures blocks would have harmed; empty if there is none.
+std::string uncompressed(const Document& document) {
+    std::string names;
+    std::size_t count = 0;
+    for (const TextureRecord& texture : document.textures) {
+        if (in_blocks(texture) || texture.psnr == 0.0f) continue;
+        fmt::format_to(std::back_inserter(names), "{}{} {:.1f} dB", count > 0 ? ", " : "",
+                       document.text(texture.name), texture.psnr);
+        ++count;
+    }
+    return count == 0
+               ? ""
+               : fmt::format("  kept uncompressed, too far off in blocks: {} ({})\n",
+                             count == 1 ? "1 texture" : fmt::format("{} textures", count), names);
 }
 
 /// A JSON array with one element a record.
@@ -196,7 +223,7 @@ std::string summary(const Document& document, std::uint64_t file_bytes) {
                grouped(file_bytes - data_bytes), position_error(document, counts),
                document.scene.frame_error_max, document.scene.frame_error_mean,
                document.scene.uv_error) +
-           wide;
+           wide + uncompressed(document);
 }
 
 std::string inspection(const Document& document, std::uint64_t file_bytes) {
@@ -239,9 +266,9 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
     const std::string textures = json_array(document.textures, [&](const TextureRecord& texture) {
         return fmt::format(
             "{{\"name\": {}, \"format\": \"{}\", \"width\": {}, \"height\": {}, \"mips\": {}, "
-            "\"bytes\": {}}}",
+            "\"bytes\": {}, \"psnr\": {:.2f}}}",
             json_text(document.text(texture.name)), name_of(texture.format), texture.width,
-            texture.height, texture.mip_count, texture.size);
+            texture.height, texture.mip_count, texture.size, texture.psnr);
     });
     return fmt::format(
         "{{\n  \"format_version\": {},\n  \"bytes\": {},\n  \"vertex_bytes\": {},\n"

@@ -55,8 +55,10 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
         {{"quantised", PositionForm::quantised}, {"f32", PositionForm::f32}},
         "how a vertex holds its position; f32 keeps UVs as floats, too [quantised]");
     add_choice<TextureMode>(app, "--textures", settings.textures,
-                            {{"lossless", TextureMode::lossless}, {"none", TextureMode::none}},
-                            "how textures are stored [lossless]");
+                            {{"bc", TextureMode::bc},
+                             {"lossless", TextureMode::lossless},
+                             {"none", TextureMode::none}},
+                            "how textures are stored [bc]");
     app.add_flag("--compress", settings.compress,
                  "store vertices and indices in fewer bytes, without loss");
     app.add_option("--threads", settings.threads, "threads to use [one a processor]")

@@ -10,6 +10,7 @@
 namespace bake {
 
 enum class TextureMode {
+    bc,        ///< in blocks, where that is good enough; roughness made fit for its normal map
     lossless,  ///< 8 bits a channel
     none,      ///< materials keep their factors only
 };
@@ -20,7 +21,7 @@ struct Settings {
     bool z_up = false;             ///< the input's up axis is +Z
     mesh_format::FrameForm frame_form = mesh_format::FrameForm::quat48;
     mesh_format::PositionForm position_form = mesh_format::PositionForm::quantised;
-    TextureMode textures = TextureMode::lossless;
+    TextureMode textures = TextureMode::bc;
     bool compress = false;                       ///< store vertices and indices in fewer bytes
     int threads = 0;                             ///< 0: one a processor
     std::optional<std::filesystem::path> stats;  ///< where to write what the bake did, as JSON

@@ -102,7 +102,7 @@ std::vector<Batch> make_batches(const std::vector<ImageRequest>& requests) {
     return batches;
 }
 
-std::vector<ImageResult> run(const std::vector<ImageRequest>& requests,
+std::vector<ImageResult> run(const std::vector<ImageRequest>& requests, TextureMode mode,
                              const TextureProgress& progress) {
     const std::vector<Batch> batches = make_batches(requests);
     const double total = std::transform_reduce(batches.begin(), batches.end(), 0.0, std::plus<>(),
@@ -127,7 +127,7 @@ std::vector<ImageResult> run(const std::vector<ImageRequest>& requests,
             report(batch, 0.0);
             ImageCache images;
             for (const std::size_t request : batch.requests) {
-                results[request] = make_textures(requests[request], images);
+                results[request] = make_textures(requests[request], mode, images);
             }
             report(batch, batch.weight);
         },
@@ -189,10 +189,10 @@ void pass_on_warnings(const std::vector<ImageResult>& results, const Warn& warn)
 
 }  // namespace
 
-TextureSet bake_textures(std::span<const SourceMaterial> materials, const Warn& warn,
-                         const TextureProgress& progress) {
+TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode mode,
+                         const Warn& warn, const TextureProgress& progress) {
     const Plan plan = make_plan(materials);
-    std::vector<ImageResult> results = run(plan.requests, progress);
+    std::vector<ImageResult> results = run(plan.requests, mode, progress);
     pass_on_warnings(results, warn);
 
     TextureSet set;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cw2-bake/diagnostics.h"
+#include "cw2-bake/settings.h"
 #include "cw2-bake/source_scene.h"
 #include "mesh-format/layout.h"
 
@@ -22,6 +23,7 @@ struct Texture {
     bool clamp = false;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
+    float psnr = 0.0f;  ///< as in mesh_format::TextureRecord
     std::vector<std::byte> payload;
 };
 
@@ -43,10 +45,10 @@ struct TextureSet {
 /// from one thread at a time.
 using TextureProgress = std::function<void(double done, std::string_view name)>;
 
-/// Reads and filters every image the materials name, on as many threads as TBB is allowed; the
-/// result does not depend on their number. An image that is missing or cannot be read is a warning
-/// that names it, and the material goes on without it.
-TextureSet bake_textures(std::span<const SourceMaterial> materials, const Warn& warn,
-                         const TextureProgress& progress);
+/// Reads and filters every image the materials name, and compresses it if `mode` says so, on as
+/// many threads as TBB is allowed; the result does not depend on their number. An image that is
+/// missing or cannot be read is a warning that names it, and the material goes on without it.
+TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode mode,
+                         const Warn& warn, const TextureProgress& progress);
 
 }  // namespace bake

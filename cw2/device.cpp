@@ -305,6 +305,8 @@ Device::Device(const Instance& instance, const std::optional<std::string>& selec
     VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                        .pNext = &features13};
     features.features.samplerAnisotropy = supported.samplerAnisotropy;
+    features.features.textureCompressionBC = supported.textureCompressionBC;
+    samples_blocks_ = supported.textureCompressionBC;
     VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                             .pNext = &features,
                             .queueCreateInfoCount = 1,

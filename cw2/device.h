@@ -58,6 +58,8 @@ class Device {
     VkQueue queue() const { return queue_; }
     std::uint32_t queue_family() const { return queue_family_; }
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
+    /// Whether images may be in the formats BC1 to BC5.
+    bool samples_blocks() const { return samples_blocks_; }
     bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
 
     /// The index of a memory type among `type_bits` that has `flags`, or else throws VulkanError.
@@ -68,6 +70,7 @@ class Device {
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};
     std::uint32_t queue_family_ = 0;
+    bool samples_blocks_ = false;
     LogicalDevice device_;
     VkQueue queue_ = VK_NULL_HANDLE;
 };

@@ -112,7 +112,7 @@ void render_to_file(const Device& device, const Options& options) {
     Timings timings;
     Clock::time_point start = Clock::now();
     const Layouts layouts(device);
-    const Scene scene = load_scene(device, layouts, options.scene, anisotropy(options, device));
+    const Scene scene = load_scene(device, layouts, options.scene, texture_settings(options, device));
     timings.load = milliseconds_since(start);
 
     const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);

@@ -190,7 +190,7 @@ int run_window(const Options& options, const std::filesystem::path& sources) {
         const Device device(instance, options.device, surface.get());
         require_size(options, device);
         const Layouts layouts(device);
-        const Scene scene = load_scene(device, layouts, options.scene, anisotropy(options, device));
+        const Scene scene = load_scene(device, layouts, options.scene, texture_settings(options, device));
         const std::uint32_t samples = options.samples.value_or(device.is_cpu() ? 1 : 4);
         Presenter presenter(device, surface.get(), layouts, built_in_shaders(),
                             static_cast<VkSampleCountFlagBits>(samples));

@@ -187,10 +187,11 @@ void require_size(const Options& options, const Device& device) {
     }
 }
 
-float anisotropy(const Options& options, const Device& device) {
+TextureSettings texture_settings(const Options& options, const Device& device) {
     // Measured on lavapipe: any anisotropy makes a frame three times as long.
     const auto wanted = static_cast<float>(options.anisotropy.value_or(device.is_cpu() ? 1u : 16u));
-    return std::min(wanted, device.properties().limits.maxSamplerAnisotropy);
+    return {.anisotropy = std::min(wanted, device.properties().limits.maxSamplerAnisotropy),
+            .decode_blocks = !device.samples_blocks()};
 }
 
 }  // namespace cw2

@@ -10,6 +10,7 @@
 
 #include "cw2/camera.h"
 #include "cw2/renderer.h"
+#include "cw2/scene.h"
 #include "cw2/view.h"
 
 namespace cw2 {
@@ -55,7 +56,7 @@ FrameSettings frame_settings(const Options& options, const Bounds& bounds, float
 /// Throws VulkanError where the device cannot render pictures of the size in the options.
 void require_size(const Options& options, const Device& device);
 
-/// The samplers' anisotropy on this device.
-float anisotropy(const Options& options, const Device& device);
+/// How the options and the device want textures.
+TextureSettings texture_settings(const Options& options, const Device& device);
 
 }  // namespace cw2

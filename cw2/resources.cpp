@@ -10,7 +10,7 @@ namespace cw2 {
 namespace {
 
 constexpr VkDeviceSize kStagingBytes = 32u << 20;
-// Suits every texel size and vkCmdCopyBufferToImage's rule of 4.
+// Suits every block size and vkCmdCopyBufferToImage's rule of 4.
 constexpr VkDeviceSize kStagingAlignment = 16;
 
 Memory allocate(const Device& device, const VkMemoryRequirements& requirements, MemoryUse use) {
@@ -230,7 +230,7 @@ void Uploader::write_buffer(VkBuffer buffer, std::span<const std::byte> bytes) {
     }
 }
 
-void Uploader::write_image(VkImage image, VkExtent2D extent, std::uint32_t texel_bytes,
+void Uploader::write_image(VkImage image, VkExtent2D extent, TexelBlock block,
                            std::span<const std::span<const std::byte>> levels) {
     const ImageUse written{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
                            VK_ACCESS_2_TRANSFER_WRITE_BIT};
@@ -239,15 +239,18 @@ void Uploader::write_image(VkImage image, VkExtent2D extent, std::uint32_t texel
     for (std::uint32_t level = 0; level < levels.size(); ++level) {
         const std::uint32_t width = mesh_format::mip_extent(extent.width, level);
         const std::uint32_t height = mesh_format::mip_extent(extent.height, level);
-        const std::size_t row_bytes = std::size_t{width} * texel_bytes;
+        const std::size_t row_bytes =
+            std::size_t{(width + block.extent - 1) / block.extent} * block.bytes;
+        const std::uint32_t row_count = (height + block.extent - 1) / block.extent;
         const auto rows_at_once = static_cast<std::uint32_t>(kStagingBytes / row_bytes);
-        for (std::uint32_t row = 0; row < height; row += rows_at_once) {
-            const std::uint32_t rows = std::min(rows_at_once, height - row);
+        for (std::uint32_t row = 0; row < row_count; row += rows_at_once) {
+            const std::uint32_t rows = std::min(rows_at_once, row_count - row);
+            const std::uint32_t y = row * block.extent;
             const VkBufferImageCopy copy{
                 .bufferOffset = stage(levels[level].subspan(row * row_bytes, rows * row_bytes)),
                 .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1},
-                .imageOffset = {0, static_cast<std::int32_t>(row), 0},
-                .imageExtent = {width, rows, 1}};
+                .imageOffset = {0, static_cast<std::int32_t>(y), 0},
+                .imageExtent = {width, std::min(rows * block.extent, height - y), 1}};
             vkCmdCopyBufferToImage(commands_, staging_.handle.get(), image,
                                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
         }

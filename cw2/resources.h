@@ -72,6 +72,12 @@ void begin_commands(VkCommandBuffer commands);
 /// Ends `commands`, submits them, and waits until the device has run them.
 void submit_and_wait(const Device& device, VkCommandBuffer commands);
 
+/// A square of texels that an image holds as one: `extent` texels a side; 1 without compression.
+struct TexelBlock {
+    std::uint32_t extent;
+    std::uint32_t bytes;
+};
+
 /// Copies from host memory into buffers and images through a staging buffer of bounded size.
 class Uploader {
  public:
@@ -79,8 +85,8 @@ class Uploader {
 
     void write_buffer(VkBuffer buffer, std::span<const std::byte> bytes);
     /// Writes every level of `image`, which was undefined and is then ready to be sampled.
-    /// Level k has rows of mip_extent(width, k) texels, `texel_bytes` each, at levels[k].
-    void write_image(VkImage image, VkExtent2D extent, std::uint32_t texel_bytes,
+    /// levels[k] starts with the rows of level k, of mip_extent(width, k) texels in blocks.
+    void write_image(VkImage image, VkExtent2D extent, TexelBlock block,
                      std::span<const std::span<const std::byte>> levels);
     /// Waits until the device has done every copy.
     void finish();

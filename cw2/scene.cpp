@@ -7,6 +7,8 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "cw2/decode.h"
+#include "cw2/decode_textures.h"
+#include "mesh-format/blocks.h"
 
 namespace cw2 {
 
@@ -21,8 +23,14 @@ using mesh_format::TextureRecord;
 // Textures share allocations: devices allow as few as 4096 of them.
 constexpr VkDeviceSize kTextureBlockBytes = 64u << 20;
 
-VkFormat vulkan_format(TextureFormat format) {
+VkFormat vulkan_format(TextureFormat format, bool decoded) {
     switch (format) {
+        case TextureFormat::bc1_srgb:
+            return decoded ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_BC1_RGB_SRGB_BLOCK;
+        case TextureFormat::bc4_unorm:
+            return decoded ? VK_FORMAT_R8_UNORM : VK_FORMAT_BC4_UNORM_BLOCK;
+        case TextureFormat::bc5_unorm:
+            return decoded ? VK_FORMAT_R8G8_UNORM : VK_FORMAT_BC5_UNORM_BLOCK;
         case TextureFormat::r8_unorm:
             return VK_FORMAT_R8_UNORM;
         case TextureFormat::rgba8_unorm:
@@ -33,8 +41,12 @@ VkFormat vulkan_format(TextureFormat format) {
     return VK_FORMAT_UNDEFINED;
 }
 
-ImageSettings image_settings(const TextureRecord& record) {
-    return {.format = vulkan_format(record.format),
+bool in_blocks(const TextureRecord& record) {
+    return mesh_format::block_extent(record.format) > 1;
+}
+
+ImageSettings image_settings(const TextureRecord& record, bool decode_blocks) {
+    return {.format = vulkan_format(record.format, decode_blocks),
             .extent = {record.width, record.height},
             .mip_count = record.mip_count,
             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
@@ -103,18 +115,25 @@ Shading shading_of(const MaterialRecord& material) {
     return material.flags & mesh_format::kAlphaMask ? Shading::alpha_mask : Shading::opaque;
 }
 
-interop::DrawConstants constants_of(const MeshRecord& mesh, const MaterialRecord& material,
-                                    float position_step) {
+std::uint32_t normal_map_of(const Document& document, const MaterialRecord& material) {
+    if (material.normal_texture == mesh_format::kNoTexture) return interop::kNormalMapAbsent;
+    return document.textures[material.normal_texture].format == TextureFormat::bc5_unorm
+               ? interop::kNormalMapXy
+               : interop::kNormalMapXyz;
+}
+
+interop::DrawConstants constants_of(const Document& document, const MeshRecord& mesh,
+                                    const MaterialRecord& material) {
     interop::DrawConstants constants{};
     constants.position_origin = glm::make_vec3(mesh.origin);
-    constants.position_step = position_step;
+    constants.position_step = document.scene.position_step;
     constants.uv_origin = glm::make_vec2(mesh.uv_origin);
     constants.uv_step = glm::make_vec2(mesh.uv_step);
     constants.base_color = glm::make_vec3(material.base_color);
     constants.roughness = material.roughness;
     constants.metalness = material.metalness;
     constants.alpha_cutoff = material.alpha_cutoff;
-    constants.has_normal_map = material.normal_texture != mesh_format::kNoTexture ? 1 : 0;
+    constants.normal_map = normal_map_of(document, material);
     return constants;
 }
 
@@ -129,16 +148,16 @@ Buffer upload_buffer(const Device& device, Uploader& uploader, std::span<const s
 }  // namespace
 
 Scene::Scene(const Device& device, const Layouts& layouts, const Document& document,
-             float anisotropy)
+             const TextureSettings& settings)
     : bounds_(bounds_of(document.scene)),
-      repeat_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, anisotropy)),
-      clamp_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, anisotropy)) {
+      repeat_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, settings.anisotropy)),
+      clamp_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, settings.anisotropy)) {
     Uploader uploader(device);
     vertices_ =
         upload_buffer(device, uploader, document.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
     indices_ = upload_buffer(device, uploader, std::as_bytes(document.indices),
                              VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
-    upload_textures(device, document, uploader);
+    upload_textures(device, document, settings.decode_blocks, uploader);
     uploader.finish();
 
     const std::vector<VkDescriptorSet> sets = make_material_sets(device, layouts, document);
@@ -153,7 +172,7 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
                                .first_index = chunk.first_index,
                                .index_count = chunk.index_count});
         }
-        draws_.push_back({.constants = constants_of(mesh, material, document.scene.position_step),
+        draws_.push_back({.constants = constants_of(document, mesh, material),
                           .forms = {mesh.position_form, mesh.frame_form, mesh.uv_form},
                           .shading = shading_of(material),
                           .cull_back = (material.flags & mesh_format::kCullBack) != 0,
@@ -163,26 +182,39 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
     }
 }
 
-void Scene::upload_textures(const Device& device, const Document& document, Uploader& uploader) {
+void Scene::upload_textures(const Device& device, const Document& document, bool decode_blocks,
+                            Uploader& uploader) {
     static constexpr std::byte kWhite[4] = {std::byte{255}, std::byte{255}, std::byte{255},
                                             std::byte{255}};
     constexpr TextureRecord kWhiteTexel{
         .format = TextureFormat::rgba8_unorm, .width = 1, .height = 1, .mip_count = 1};
     std::vector<VkImage> images;
     const auto add = [&](const TextureRecord& record) {
-        textures_.push_back({.image = make_image_handle(device, image_settings(record)),
-                             .clamp = (record.flags & mesh_format::kClampToEdge) != 0});
+        textures_.push_back(
+            {.image = make_image_handle(device, image_settings(record, decode_blocks)),
+             .clamp = (record.flags & mesh_format::kClampToEdge) != 0});
         images.push_back(textures_.back().image.get());
     };
     for (const TextureRecord& record : document.textures) add(record);
     add(kWhiteTexel);
     texture_memory_ = bind_memory(device, images);
 
+    std::vector<std::byte> decoded;
     const auto upload = [&](std::size_t i, const TextureRecord& record,
                             std::span<const std::span<const std::byte>> levels) {
-        uploader.write_image(images[i], {record.width, record.height},
-                             mesh_format::texel_bytes(record.format), levels);
-        textures_[i].view = make_image_view(device, images[i], image_settings(record));
+        const VkExtent2D extent{record.width, record.height};
+        if (decode_blocks && in_blocks(record)) {
+            uploader.write_image(images[i], extent,
+                                 {1, mesh_format::decoded_texel_bytes(record.format)},
+                                 decode_levels(record, levels, decoded));
+        } else {
+            uploader.write_image(
+                images[i], extent,
+                {mesh_format::block_extent(record.format), mesh_format::block_bytes(record.format)},
+                levels);
+        }
+        textures_[i].view =
+            make_image_view(device, images[i], image_settings(record, decode_blocks));
     };
     for (std::size_t i = 0; i < document.textures.size(); ++i) {
         upload(i, document.textures[i], levels_of(document.textures[i], document.texels));
@@ -255,7 +287,7 @@ std::uint64_t Scene::triangle_count() const {
 }
 
 Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
-                 float anisotropy) {
+                 const TextureSettings& settings) {
     const mesh_format::MappedFile file(path);
     const std::string extension = path.extension().string();
     if (extension == ".obj" || extension == ".OBJ") {
@@ -273,7 +305,7 @@ Scene load_scene(const Device& device, const Layouts& layouts, const std::filesy
         document.encoded_indices = {};
         mesh_format::check(document, path.string());
     }
-    return {device, layouts, document, anisotropy};
+    return {device, layouts, document, settings};
 }
 
 }  // namespace cw2

@@ -39,12 +39,17 @@ struct SceneChunk {
     std::uint32_t index_count;
 };
 
+/// How textures are kept and sampled.
+struct TextureSettings {
+    float anisotropy = 1.0f;     ///< the samplers' largest ratio, 1 for none
+    bool decode_blocks = false;  ///< what is stored in blocks becomes single texels
+};
+
 class Scene {
  public:
-    /// Uploads `document`, which is not needed afterwards. `anisotropy` is the samplers' largest
-    /// ratio, 1 for none. Throws VulkanError.
+    /// Uploads `document`, which is not needed afterwards. Throws VulkanError.
     Scene(const Device& device, const Layouts& layouts, const mesh_format::Document& document,
-          float anisotropy);
+          const TextureSettings& settings);
 
     const Bounds& bounds() const { return bounds_; }
     const std::vector<Draw>& draws() const { return draws_; }
@@ -61,7 +66,7 @@ class Scene {
     };
 
     void upload_textures(const Device& device, const mesh_format::Document& document,
-                         Uploader& uploader);
+                         bool decode_blocks, Uploader& uploader);
     std::vector<VkDescriptorSet> make_material_sets(const Device& device, const Layouts& layouts,
                                                     const mesh_format::Document& document);
     void write_material_set(const Device& device, VkDescriptorSet set,
@@ -82,6 +87,6 @@ class Scene {
 /// Reads, checks and uploads a .cw2mesh file. Throws mesh_format::FileError (a source format is
 /// told to be baked first, with the command) or VulkanError.
 Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
-                 float anisotropy);
+                 const TextureSettings& settings);
 
 }  // namespace cw2

@@ -161,13 +161,14 @@ void check_texture(const Checker& check, const Document& document, std::size_t i
         check.require(condition, "texture", i, what);
     };
     require(valid_text(document, texture.name), "its name lies outside the strings");
-    require(texture.format <= TextureFormat::rgba8_srgb, "unknown format");
+    require(texture.format <= TextureFormat::bc5_unorm, "unknown format");
     require((texture.flags & ~std::uint32_t{kClampToEdge}) == 0, "unknown flags");
     require(texture.width > 0 && texture.width <= kMaxTextureSize && texture.height > 0 &&
                 texture.height <= kMaxTextureSize,
             "its size is out of range");
     require(texture.mip_count == full_mip_count(texture.width, texture.height),
             "its mip count does not fit its size");
+    require(texture.psnr >= 0.0f && texture.psnr <= kExactPsnr, "its PSNR is out of range");
     require(texture.size == mip_chain_bytes(texture.format, texture.width, texture.height) &&
                 texture.offset % kMipAlignment == 0 &&
                 in_range(texture.offset, texture.size, document.texels.size()),

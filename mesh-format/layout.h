@@ -31,7 +31,7 @@ namespace mesh_format {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 inline constexpr std::array<char, 8> kMagic{'C', 'W', '2', 'M', 'E', 'S', 'H', '\0'};
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 /// A mesh's vertices are addressed by 16-bit indices.
 inline constexpr std::uint32_t kMaxMeshVertices = 65'536;
@@ -164,18 +164,24 @@ struct MaterialRecord {
     std::uint32_t alpha_mask_texture;
 };
 
+/// The blocks are those of the Khronos Data Format Specification 1.3, 4 x 4 texels each. A normal
+/// map holds 0.5 n + 0.5; in bc5_unorm x and y alone, and z = sqrt(max(0, 1 - x^2 - y^2)).
 enum class TextureFormat : std::uint32_t {
     r8_unorm,
     rgba8_unorm,
     rgba8_srgb,
+    bc1_srgb,   ///< opaque red, green and blue
+    bc4_unorm,  ///< red
+    bc5_unorm,  ///< red and green
 };
 
 enum TextureFlags : std::uint32_t {
     kClampToEdge = 1,  ///< otherwise repeat
 };
 
-/// A texture's payload is its complete mip chain, largest level first, each level's rows tightly
-/// packed from the top, each level starting at a multiple of kMipAlignment from the first.
+/// A texture's payload is its complete mip chain, largest level first, each level's rows (of texels
+/// or of blocks) tightly packed from the top, each level starting at a multiple of kMipAlignment
+/// from the first. Blocks that reach over the right or lower edge hold anything there.
 struct TextureRecord {
     StringRef name;
     TextureFormat format;
@@ -183,11 +189,14 @@ struct TextureRecord {
     std::uint32_t width;  ///< texels of level 0
     std::uint32_t height;
     std::uint32_t mip_count;  ///< full_mip_count(width, height)
-    std::uint32_t reserved;   ///< 0
+    /// Of level 0 in blocks against the texels that it stands for, dB, at most kExactPsnr; also
+    /// where it was too low, so that the texture stayed as it was. 0 where blocks were not tried.
+    float psnr;
     std::uint64_t offset;     ///< bytes into the texels section, a multiple of kMipAlignment
     std::uint64_t size;       ///< mip_chain_bytes(format, width, height)
 };
 inline constexpr std::uint64_t kMipAlignment = 16;
+inline constexpr float kExactPsnr = 100.0f;
 inline constexpr std::uint32_t kMaxTextureSize = 16'384;
 
 static_assert(sizeof(Section) == 24 && sizeof(Header) == 32 + 24 * kSectionCount);
@@ -230,8 +239,30 @@ constexpr VertexLayout vertex_layout(PositionForm position, FrameForm frame, UvF
 static_assert(vertex_layout(PositionForm::quantised, FrameForm::quat48, UvForm::quantised).stride ==
               16);
 
-constexpr std::uint32_t texel_bytes(TextureFormat format) {
-    return format == TextureFormat::r8_unorm ? 1 : 4;
+/// Texels along each side of a block; formats without blocks count as blocks of one texel.
+constexpr std::uint32_t block_extent(TextureFormat format) {
+    return format >= TextureFormat::bc1_srgb ? 4 : 1;
+}
+
+constexpr std::uint32_t block_bytes(TextureFormat format) {
+    switch (format) {
+        case TextureFormat::r8_unorm:
+            return 1;
+        case TextureFormat::rgba8_unorm:
+        case TextureFormat::rgba8_srgb:
+            return 4;
+        case TextureFormat::bc1_srgb:
+        case TextureFormat::bc4_unorm:
+            return 8;
+        case TextureFormat::bc5_unorm:
+            return 16;
+    }
+    return 0;
+}
+
+/// Blocks that it takes to hold `extent` texels along a side.
+constexpr std::uint32_t block_count(TextureFormat format, std::uint32_t extent) {
+    return (extent + block_extent(format) - 1) / block_extent(format);
 }
 
 constexpr std::uint32_t full_mip_count(std::uint32_t width, std::uint32_t height) {
@@ -246,8 +277,9 @@ constexpr std::uint32_t mip_extent(std::uint32_t extent, std::uint32_t level) {
 /// Bytes of one level, padding to kMipAlignment included.
 constexpr std::uint64_t mip_bytes(TextureFormat format, std::uint32_t width, std::uint32_t height,
                                   std::uint32_t level) {
-    const std::uint64_t bytes =
-        std::uint64_t{mip_extent(width, level)} * mip_extent(height, level) * texel_bytes(format);
+    const std::uint64_t bytes = std::uint64_t{block_count(format, mip_extent(width, level))} *
+                                block_count(format, mip_extent(height, level)) *
+                                block_bytes(format);
     return (bytes + kMipAlignment - 1) / kMipAlignment * kMipAlignment;
 }
 
@@ -260,5 +292,8 @@ constexpr std::uint64_t mip_chain_bytes(TextureFormat format, std::uint32_t widt
     }
     return sum;
 }
+static_assert(mip_chain_bytes(TextureFormat::r8_unorm, 5, 3) == 16 + 16 + 16);
+static_assert(mip_chain_bytes(TextureFormat::bc1_srgb, 9, 5) == 3 * 2 * 8 + 16 + 16 + 16);
+static_assert(mip_chain_bytes(TextureFormat::bc5_unorm, 8, 4) == 2 * 16 + 16 + 16 + 16);
 
 }  // namespace mesh_format

@@ -53,8 +53,12 @@ struct DrawConstants {
     float roughness;
     float metalness;
     float alpha_cutoff;
-    uint has_normal_map;  // 0 or 1
+    uint normal_map;  // kNormalMapAbsent...
 };
+
+CW2_CONSTANT uint kNormalMapAbsent = 0;
+CW2_CONSTANT uint kNormalMapXyz = 1;
+CW2_CONSTANT uint kNormalMapXy = 2;  // z is rebuilt
 
 // Vertex inputs; all are read as unsigned integers of the width their form has.
 CW2_CONSTANT uint kPositionLocation = 0;

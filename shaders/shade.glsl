@@ -24,8 +24,11 @@ layout(location = 0) out vec4 color;
 // In MikkTSpace's way: the bitangent from the interpolated normal and tangent as they are, only
 // the sum is normalised.
 vec3 shading_normal() {
-    if (use_normal_map == 0 || draw.has_normal_map == 0) return normalize(world_normal);
-    const vec3 t = texture(normal_map, uv).xyz * 2.0 - 1.0;
+    if (use_normal_map == 0 || draw.normal_map == kNormalMapAbsent) {
+        return normalize(world_normal);
+    }
+    vec3 t = texture(normal_map, uv).xyz * 2.0 - 1.0;
+    if (draw.normal_map == kNormalMapXy) t.z = sqrt(max(1.0 - dot(t.xy, t.xy), 0.0));
     const vec3 bitangent = handedness * cross(world_normal, world_tangent);
     return normalize(t.x * world_tangent + t.y * bitangent + t.z * world_normal);
 }

@@ -25,14 +25,15 @@ struct Baked {
         const Texture& in = texture(index);
         const std::size_t texel = std::size_t{y} * in.width + x;
         return std::to_integer<int>(
-            in.payload.at(texel * mesh_format::texel_bytes(in.format) + channel));
+            in.payload.at(texel * mesh_format::block_bytes(in.format) + channel));
     }
 };
 
 Baked bake_all(const std::vector<SourceMaterial>& materials) {
     Baked baked;
-    baked.set = bake::bake_textures(
-        materials, [&](const std::string& line) { baked.warnings.push_back(line); }, {});
+    baked.set =
+        bake::bake_textures(materials, bake::TextureMode::lossless,
+                            [&](const std::string& line) { baked.warnings.push_back(line); }, {});
     EXPECT_EQ(baked.set.materials.size(), materials.size());
     for (const Texture& texture : baked.set.textures) {
         EXPECT_EQ(texture.payload.size(),
@@ -273,7 +274,8 @@ TEST(BadImages, OneWarningAnImageInOrderOfFirstUse) {
 TEST(BadImages, AWarningMayEndTheBake) {
     const std::vector<SourceMaterial> materials{with_color(map_of("/nowhere/a.png"))};
     const bake::Warn strict = [](const std::string& line) { throw bake::BakeError(line); };
-    EXPECT_THROW(bake::bake_textures(materials, strict, {}), bake::BakeError);
+    EXPECT_THROW(bake::bake_textures(materials, bake::TextureMode::lossless, strict, {}),
+                 bake::BakeError);
 }
 
 }  // namespace

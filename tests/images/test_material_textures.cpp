@@ -17,15 +17,15 @@ using bake::TextureSet;
 using mesh_format::kNoTexture;
 
 TextureSet bake_quietly(const std::vector<SourceMaterial>& materials) {
-    return bake::bake_textures(materials, [](const std::string& line) { ADD_FAILURE() << line; },
-                               {});
+    return bake::bake_textures(materials, bake::TextureMode::lossless,
+                               [](const std::string& line) { ADD_FAILURE() << line; }, {});
 }
 
 std::vector<int> first_texels(const Texture& texture, std::size_t count) {
     std::vector<int> values;
     for (std::size_t i = 0; i < count; ++i) {
         values.push_back(
-            std::to_integer<int>(texture.payload[i * mesh_format::texel_bytes(texture.format)]));
+            std::to_integer<int>(texture.payload[i * mesh_format::block_bytes(texture.format)]));
     }
     return values;
 }
@@ -161,8 +161,9 @@ TEST(NormalMaps, ThatAreGreyAreNamedAndIgnored) {
     SourceMaterial material;
     material.normal_map = map_of(folder / "grey.png", "b.mtl:9");
     std::vector<std::string> warnings;
-    const TextureSet set = bake::bake_textures(
-        std::vector{material}, [&](const std::string& line) { warnings.push_back(line); }, {});
+    const TextureSet set =
+        bake::bake_textures(std::vector{material}, bake::TextureMode::lossless,
+                            [&](const std::string& line) { warnings.push_back(line); }, {});
     EXPECT_EQ(set.materials[0].normal, kNoTexture);
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(warnings[0].find("b.mtl:9: "), 0u);
@@ -261,7 +262,7 @@ TEST(Progress, RisesToOneAndNamesTheImages) {
     double last = 0.0;
     std::vector<std::string> names;
     bake::bake_textures(
-        std::vector{material}, [](const std::string&) {},
+        std::vector{material}, bake::TextureMode::lossless, [](const std::string&) {},
         [&](double done, std::string_view name) {
             EXPECT_GE(done, last);
             last = done;

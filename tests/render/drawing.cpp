@@ -22,7 +22,8 @@ std::filesystem::path bake_scene(const std::filesystem::path& obj,
                                  const std::vector<std::string>& options) {
     std::filesystem::path baked = obj;
     baked.replace_extension(".cw2mesh");
-    run_silently({BAKE_PROGRAM, obj, "-o", baked, "--strict", "--quiet"}, options);
+    run_silently(
+        {BAKE_PROGRAM, obj, "-o", baked, "--strict", "--quiet", "--textures", "lossless"}, options);
     return baked;
 }
 

@@ -43,7 +43,7 @@ std::vector<int> level_of(const Payload& payload, TextureFormat format, std::uin
     }
     const std::size_t count = std::size_t{mesh_format::mip_extent(width, level)} *
                               mesh_format::mip_extent(height, level) *
-                              mesh_format::texel_bytes(format);
+                              mesh_format::block_bytes(format);
     std::vector<int> bytes;
     for (std::size_t i = 0; i < count; ++i) {
         bytes.push_back(std::to_integer<int>(payload[offset + i]));

@@ -1,0 +1,22 @@
+// Texture blocks to texels.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "mesh-format/layout.h"
+
+namespace mesh_format {
+
+/// Bytes of a texel that decode_block_row() makes of `format`, one with blocks: bc1_srgb becomes
+/// red, green, blue and 255; bc4_unorm red; bc5_unorm red and green; 8 bits each.
+constexpr std::uint32_t decoded_texel_bytes(TextureFormat format) {
+    return format == TextureFormat::bc1_srgb ? 4 : format == TextureFormat::bc4_unorm ? 1 : 2;
+}
+
+/// Decodes a row of block_count(format, width) blocks to `rows` rows (at most 4) of `width` texels,
+/// tightly packed. Values between the two that a block states are rounded to 8 bits.
+void decode_block_row(TextureFormat format, const std::byte* blocks, std::uint32_t width,
+                      std::uint32_t rows, std::byte* out);
+
+}  // namespace mesh_format
