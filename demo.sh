@@ -4,17 +4,21 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 
-court='--camera-position 8.5,2.6,2.2 --camera-target -2,2.3,-1 --light-position 3,6,3'
-lion='--camera-position 2.1,2.5,2.5 --camera-target 0,2.3,0 --fov 50 --light-position 3,4,3'
-bright='--light-color 3.5,3.5,3.3'
+court='--camera-position 7.8,2.5,2.3 --camera-target -1.5,2.15,-0.3
+       --light-position 4,7,5 --light-color 2.5,2.4,2.2'
+lion='--camera-position 2.6,2.6,3 --camera-target 1.15,2.35,1.15
+      --light-position 5,4.5,2.5 --light-color 2,2,2'
+plants='--camera-position 9.35,1.5,0.35 --camera-target 5.9,1.15,-2.9
+        --light-position 8,5,3 --light-color 2.2,2.2,2.2'
 # picture | what cw2 is told besides the scene
 pictures="
-overview       | --light-color 3,3,3
-courtyard      | $court $bright
-courtyard-5s   | $court $bright --time 5.4
-lion           | $lion $bright --time 0.9
-lion-5s        | $lion $bright --time 5.4
-normal         | $court --view normal
+overview       | --light-color 2,2,2
+courtyard      | ${court//$'\n'/}
+courtyard-5s   | ${court//$'\n'/} --time 5.4
+lion           | ${lion//$'\n'/}
+lion-5s        | ${lion//$'\n'/} --time 5.4
+plants         | ${plants//$'\n'/}
+normal         | ${court//$'\n'/} --view normal
 "
 
 model=build/release/assets/demo/courtyard.obj
@@ -47,7 +51,7 @@ while IFS='|' read -r name arguments; do
     timed "$picture" "$cw2" "$scene" --output "$picture" "${arguments[@]}" </dev/null
 done <<<"$pictures"
 
-read -ra arguments <<<"$court $bright"
+read -ra arguments <<<"${court//$'\n'/}"
 window=("$cw2" "$scene" "${arguments[@]}")
 echo "To open the window: cd $PWD && ${window[*]}"
 if [[ -t 1 && -n ${DISPLAY:-} ]]; then

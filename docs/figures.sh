@@ -11,12 +11,12 @@ mkdir -p "$work"
 
 "$bin/cw2-bake" "$model" -o "$work/courtyard.cw2mesh" --quiet
 "$bin/cw2" "$work/courtyard.cw2mesh" --output courtyard.png --size 960x540 \
-    --camera-position 8.5,2.6,2.2 --camera-target -2,2.3,-1 --light-position 3,6,3 \
-    --light-color 3.5,3.5,3.3 --time 5.4
+    --camera-position 7.8,2.5,2.3 --camera-target -1.5,2.15,-0.3 --light-position 4,7,5 \
+    --light-color 2.5,2.4,2.2 --time 5.4
 
 # The lion's face, each form of its frames beside the exact one.
-face=(--size 256x256 --samples 1 --camera-position 2.1,2.5,2.5 --camera-target 0,2.3,0
-      --fov 50 --light-position 3,4,3 --light-color 3,3,3 --time 0.9)
+face=(--size 256x256 --samples 1 --camera-position 2.6,2.6,3 --camera-target 1.15,2.35,1.15
+      --light-position 5,4.5,2.5 --light-color 2,2,2)
 forms=(f32 quat48 quat32 half3)
 for form in "${forms[@]}"; do
     "$bin/cw2-bake" "$model" -o "$work/$form.cw2mesh" --tangent-frame "$form" --quiet
