@@ -86,6 +86,59 @@ void split(std::span<Triangle> triangles, std::uint32_t first, std::span<Range> 
     }
 }
 
+struct UvBox {
+    glm::vec2 low{std::numeric_limits<float>::infinity()};
+    glm::vec2 high{-std::numeric_limits<float>::infinity()};
+
+    void add(const glm::vec2& uv) {
+        low = glm::min(low, uv);
+        high = glm::max(high, uv);
+    }
+};
+
+/// The range of UVs that 16 bits hold within a budget.
+class UvLimit {
+ public:
+    explicit UvLimit(const UvBudget& budget)
+        : range_(kLatticeSpan * std::exp2(std::floor(std::log2(budget.largest_step())))) {}
+
+    bool exceeded_by(const UvBox& box) const {
+        return box.high.x - box.low.x > range_ || box.high.y - box.low.y > range_;
+    }
+
+ private:
+    double range_;
+};
+
+/// Halves `range` by UV as long as it exceeds the limit, and writes what results to `chunks`.
+void split_by_uv(const FramedMesh& mesh, const UvLimit& limit, std::span<Triangle> triangles,
+                 Range range, std::vector<Range>& chunks) {
+    UvBox box;
+    const auto part = triangles.subspan(range.first, range.last - range.first);
+    for (const Triangle& triangle : part) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            box.add(mesh.uvs[mesh.indices[3 * std::size_t{triangle.index} + corner]]);
+        }
+    }
+    if (part.size() == 1 || !limit.exceeded_by(box)) {
+        chunks.push_back(range);
+        return;
+    }
+    const int axis = box.high.x - box.low.x >= box.high.y - box.low.y ? 0 : 1;
+    const auto uv_of = [&](const Triangle& triangle) {
+        const auto corner = [&](std::size_t k) {
+            return mesh.uvs[mesh.indices[3 * std::size_t{triangle.index} + k]][axis];
+        };
+        return std::max({corner(0), corner(1), corner(2)});
+    };
+    std::sort(part.begin(), part.end(), [&](const Triangle& a, const Triangle& b) {
+        return std::pair(uv_of(a), a.index) < std::pair(uv_of(b), b.index);
+    });
+    const std::uint32_t half = range.first + static_cast<std::uint32_t>(part.size() / 2);
+    split_by_uv(mesh, limit, triangles, {range.first, half}, chunks);
+    split_by_uv(mesh, limit, triangles, {half, range.last}, chunks);
+}
+
 /// Orders the triangles of one chunk; reused from chunk to chunk by one thread.
 class ChunkOptimiser {
  public:
@@ -131,16 +184,16 @@ class ChunkOptimiser {
 /// Gathers chunks into meshes.
 class Assembler {
  public:
-    Assembler(const FramedMesh& source, const UvBudget& budget)
-        : source_(source),
-          largest_uv_range_(kLatticeSpan * std::exp2(std::floor(std::log2(budget.largest_step())))),
-          placed_(source.positions.size(), kNone) {}
+    Assembler(const FramedMesh& source, UvLimit limit)
+        : source_(source), limit_(limit), placed_(source.positions.size(), kNone) {}
 
     void add(std::span<const std::uint32_t> indices) {
-        const UvBox box = uv_box(indices);
+        UvBox box;
+        for (const std::uint32_t vertex : indices) box.add(source_.uvs[vertex]);
         const UvBox merged{glm::min(box_.low, box.low), glm::max(box_.high, box.high)};
         // A chunk too wide by itself shares a mesh with others of that kind only.
-        const bool uvs_fit = is_wide(merged) == is_wide(box) && is_wide(merged) == is_wide(box_);
+        const bool uvs_fit = limit_.exceeded_by(merged) == limit_.exceeded_by(box) &&
+                             limit_.exceeded_by(merged) == limit_.exceeded_by(box_);
         if (meshes_.empty() || !uvs_fit || !has_room(indices)) start_mesh();
         box_ = {glm::min(box_.low, box.low), glm::max(box_.high, box.high)};
         ChunkedMesh& piece = meshes_.back();
@@ -163,26 +216,6 @@ class Assembler {
     std::vector<ChunkedMesh> take() { return std::move(meshes_); }
 
  private:
-    struct UvBox {
-        glm::vec2 low{std::numeric_limits<float>::infinity()};
-        glm::vec2 high{-std::numeric_limits<float>::infinity()};
-    };
-
-    UvBox uv_box(std::span<const std::uint32_t> indices) const {
-        UvBox box;
-        for (const std::uint32_t vertex : indices) {
-            box.low = glm::min(box.low, source_.uvs[vertex]);
-            box.high = glm::max(box.high, source_.uvs[vertex]);
-        }
-        return box;
-    }
-
-    /// Whether 16 bits cannot hold UVs of this range exactly enough.
-    bool is_wide(const UvBox& box) const {
-        return box.high.x - box.low.x > largest_uv_range_ ||
-               box.high.y - box.low.y > largest_uv_range_;
-    }
-
     bool has_room(std::span<const std::uint32_t> indices) const {
         // Every index may name a new vertex; only near the limit is it worth to count.
         const std::size_t room = mesh_format::kMaxMeshVertices - members_.size();
@@ -203,7 +236,7 @@ class Assembler {
     }
 
     const FramedMesh& source_;
-    double largest_uv_range_;
+    UvLimit limit_;
     UvBox box_;                           // of the last mesh
     std::vector<std::uint32_t> placed_;   // source vertex -> vertex of the last mesh
     std::vector<std::uint32_t> members_;  // vertex of the last mesh -> source vertex
@@ -226,8 +259,11 @@ std::vector<Triangle> triangles_of(const FramedMesh& mesh) {
 
 std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh, const UvBudget& budget) {
     std::vector<Triangle> triangles = triangles_of(mesh);
-    std::vector<Range> ranges(chunk_count(triangles.size()));
-    split(triangles, 0, ranges);
+    std::vector<Range> near(chunk_count(triangles.size()));
+    split(triangles, 0, near);
+    const UvLimit limit(budget);
+    std::vector<Range> ranges;
+    for (const Range range : near) split_by_uv(mesh, limit, triangles, range, ranges);
 
     std::vector<std::uint32_t> indices(mesh.indices.size());
     tbb::enumerable_thread_specific<ChunkOptimiser> optimisers(
@@ -238,7 +274,7 @@ std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh, const UvBudget& bud
                                indices.data() + 3 * std::size_t{range.first});
     });
 
-    Assembler assembler(mesh, budget);
+    Assembler assembler(mesh, limit);
     for (const Range range : ranges) {
         assembler.add(std::span(indices).subspan(3 * std::size_t{range.first},
                                                  3 * std::size_t{range.last - range.first}));

@@ -31,9 +31,9 @@ struct ChunkedMesh {
 };
 
 /// Cuts `mesh` by halving its triangles at the median of their longest side until at most
-/// mesh_format::kMaxChunkTriangles are left, then orders each chunk's triangles for the vertex
-/// cache and against overdraw. Neighbouring chunks share a mesh as long as its number of vertices
-/// and the range of its UVs, held in 16 bits within `budget`, allow.
+/// mesh_format::kMaxChunkTriangles are left, and further by UV where 16 bits would not hold a
+/// chunk's UVs within `budget`; then orders each chunk's triangles for the vertex cache and against
+/// overdraw. Neighbouring chunks share a mesh as long as its vertices and its UVs allow.
 std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh, const UvBudget& budget);
 
 }  // namespace bake

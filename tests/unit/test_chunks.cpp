@@ -130,6 +130,20 @@ TEST(Chunks, ShareAMeshOnlyWhere16BitsHoldTheirUvs) {
     EXPECT_LE(packed.scene.uv_error, 0.125f);
 }
 
+TEST(Chunks, AreCutByUvWhereOneAloneWouldBeTooWide) {
+    bake::FramedMesh strip = make_sheet(10);  // 200 triangles, one chunk by their number
+    for (glm::vec2& uv : strip.uvs) uv.x *= 100.0f;
+    const bake::UvBudget budget{.texels = 1024};
+    const auto pieces = bake::make_chunks(strip, budget);
+    const auto packed =
+        bake::quantise(pieces, {&budget, 1},
+                       {mesh_format::FrameForm::quat48, mesh_format::PositionForm::quantised});
+    EXPECT_GE(packed.meshes.size(), 7u);
+    for (const mesh_format::MeshRecord& mesh : packed.meshes) {
+        EXPECT_EQ(mesh.uv_form, mesh_format::UvForm::quantised);
+    }
+}
+
 bake::PackedGeometry pack(const std::vector<bake::ChunkedMesh>& pieces) {
     const bake::UvBudget budget;
     return bake::quantise(pieces, {&budget, 1},
