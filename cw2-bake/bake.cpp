@@ -97,7 +97,7 @@ MaterialRecord material_record(const SourceMaterial& source, const MaterialTextu
     for (int channel = 0; channel < 3; ++channel) {
         record.base_color[channel] = source.base_color[channel];
     }
-    record.roughness = source.roughness;
+    record.roughness = textures.roughness_holds_factor ? 1.0f : source.roughness;
     record.metalness = source.metalness;
     record.alpha_cutoff = source.alpha_cutoff;
     if (textures.alpha_mask != kNoTexture) record.flags |= mesh_format::kAlphaMask;

@@ -6,6 +6,7 @@
 
 #include "cw2-bake/block_compression.h"
 #include "cw2-bake/mip_chain.h"
+#include "cw2-bake/roughness_mips.h"
 #include "cw2-bake/texels.h"
 
 namespace bake {
@@ -127,33 +128,80 @@ bool is_flat(const Texture& texture) {
            near_zero(texture.payload[1]) && texture.payload[2] == std::byte{255};
 }
 
-void make_normals(const ImageRequest& request, ImageCache& images, ImageResult& result) {
-    const Image* image = load(request.map, images, result);
+/// The normals of a normal map or a bump map, if it can be used.
+std::optional<TexelSource> find_normals(const std::optional<TextureMap>& map, bool bump,
+                                        float bump_scale, ImageCache& images, ImageResult& result) {
+    const Image* image = load(map, images, result);
     if (!image) {
-        return;
+        return std::nullopt;
     }
-    const TextureMap& map = *request.map;
     const bool grey = is_grey(*image);
-    const bool bump = request.kind == ImageRequest::Kind::bump;
     if (!bump && grey) {
-        warn(map, "is grey, so it is no normal map", result);
+        warn(*map, "is grey, so it is no normal map", result);
+        return std::nullopt;
+    }
+    const bool heights = bump && (grey || map->channel != Channel::standard);
+    return heights ? normal_texels_of_heights(*image, map->channel, bump_scale, map->clamp)
+                   : normal_texels(*image);
+}
+
+void make_normals(const ImageRequest& request, ImageCache& images, ImageResult& result) {
+    const bool bump = request.kind == ImageRequest::Kind::bump;
+    const auto texels = find_normals(request.map, bump, request.bump_scale, images, result);
+    if (!texels) {
         return;
     }
-    const bool heights = bump && (grey || map.channel != Channel::standard);
     constexpr TextureFormat kFormat = TextureFormat::rgba8_unorm;
-    const TexelSource texels =
-        heights ? normal_texels_of_heights(*image, map.channel, request.bump_scale, map.clamp)
-                : normal_texels(*image);
-    Texture texture = finish(map, kFormat, texels, filter_chain(kFormat, texels, encode_normal8));
+    Texture texture =
+        finish(*request.map, kFormat, *texels, filter_chain(kFormat, *texels, encode_normal8));
     if (!is_flat(texture)) {
         result.texture = std::move(texture);
     }
 }
 
+/// `source` with each of its texels repeated to cover a larger image.
+TexelSource enlarged(const TexelSource& source, std::uint32_t width, std::uint32_t height) {
+    return {width, height, 1,
+            [=, row = std::vector<float>(source.width)](std::uint32_t y,
+                                                        std::span<float> texels) mutable {
+                source.read_row(
+                    static_cast<std::uint32_t>(std::uint64_t{y} * source.height / height), row);
+                for (std::size_t x = 0; x < width; ++x) texels[x] = row[x * row.size() / width];
+            }};
+}
+
+void make_roughness(const ImageRequest& request, ImageCache& images, ImageResult& result) {
+    const auto normals =
+        find_normals(request.relief, request.relief_is_bump, request.bump_scale, images, result);
+    const Image* image = load(request.map, images, result);
+    const TexelSource constant{1, 1, 1,
+                               [](std::uint32_t, std::span<float> texels) { texels[0] = 1.0f; }};
+    if (normals && (image || !request.map)) {
+        const TexelSource own = image ? scalar_texels(*image, request.map->channel) : constant;
+        const TexelSource alphas = enlarged(own, std::max(own.width, normals->width),
+                                            std::max(own.height, normals->height));
+        MeanLengths lengths = mean_lengths(*normals);
+        RoughnessChain chain = filter_roughness(alphas, request.factor, lengths);
+        if (chain.widened) {
+            const TextureMap& map = image ? *request.map : *request.relief;
+            result.texture = Texture{.name = map.file.filename().string(),
+                                     .format = TextureFormat::r8_unorm,
+                                     .clamp = map.clamp,
+                                     .width = alphas.width,
+                                     .height = alphas.height,
+                                     .payload = std::move(chain.payload)};
+            result.holds_factor = true;
+            return;
+        }
+    }
+    make_scalar(request, images, result);
+}
+
 }  // namespace
 
 const std::filesystem::path& first_file(const ImageRequest& request) {
-    return request.map ? request.map->file : request.alpha_map->file;
+    // That of the relief, so that a batch decodes it once.
+    return (request.relief ? request.relief : request.map ? request.map : request.alpha_map)->file;
 }
 
 const Image& ImageCache::get(const std::filesystem::path& file) {
@@ -170,6 +218,9 @@ ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCa
             break;
         case ImageRequest::Kind::scalar:
             make_scalar(request, images, result);
+            break;
+        case ImageRequest::Kind::roughness:
+            make_roughness(request, images, result);
             break;
         case ImageRequest::Kind::normal:
         case ImageRequest::Kind::bump:

@@ -18,6 +18,7 @@ struct ImageRequest {
     enum class Kind : std::uint8_t {
         surface,  ///< base colour and alpha mask, which depend on each other
         scalar,
+        roughness,  ///< under the normal map or bump map `relief`; `map` may be absent
         normal,
         bump,
     };
@@ -25,7 +26,10 @@ struct ImageRequest {
     std::optional<TextureMap> map{};        ///< of a surface: the base colour
     std::optional<TextureMap> alpha_map{};  ///< of a surface; it or `map` is there
     float alpha_cutoff = 0.0f;              ///< of a surface
-    float bump_scale = 0.0f;                ///< of a bump
+    float bump_scale = 0.0f;                ///< of a bump, also as a relief
+    std::optional<TextureMap> relief{};     ///< of roughness
+    bool relief_is_bump = false;
+    float factor = 1.0f;  ///< of roughness, what its map is multiplied with
 };
 
 /// The image that is read for a request whatever it holds.
@@ -40,6 +44,7 @@ struct ImageWarning {
 struct ImageResult {
     std::optional<Texture> texture;
     std::optional<Texture> alpha_mask;
+    bool holds_factor = false;  ///< of roughness: the texels are multiplied with it already
     std::vector<ImageWarning> warnings;
 };
 

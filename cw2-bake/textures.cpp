@@ -42,14 +42,30 @@ auto identity(const std::optional<TextureMap>& map) {
 }
 auto identity(const ImageRequest& request) {
     return std::tuple(request.kind, identity(request.map), identity(request.alpha_map),
-                      request.alpha_cutoff, request.bump_scale);
+                      request.alpha_cutoff, request.bump_scale, identity(request.relief),
+                      request.relief_is_bump, request.factor);
 }
 
-Plan make_plan(std::span<const SourceMaterial> materials) {
+/// In blocks, the bumps of a normal map make the smaller levels of the roughness rougher.
+ImageRequest roughness_request(const SourceMaterial& material, TextureMode mode) {
+    ImageRequest request{.kind = ImageRequest::Kind::scalar, .map = material.roughness_map};
+    const bool has_relief = material.normal_map || material.bump_map;
+    if (mode != TextureMode::bc || !has_relief || (!request.map && material.roughness >= 1.0f)) {
+        return request;
+    }
+    request.kind = ImageRequest::Kind::roughness;
+    request.relief = material.normal_map ? material.normal_map : material.bump_map->map;
+    request.relief_is_bump = !material.normal_map;
+    if (request.relief_is_bump) request.bump_scale = material.bump_map->scale;
+    request.factor = material.roughness;
+    return request;
+}
+
+Plan make_plan(std::span<const SourceMaterial> materials, TextureMode mode) {
     Plan plan;
     std::map<decltype(identity(ImageRequest{})), std::size_t> known;
     const auto add = [&](ImageRequest request) {
-        if (!request.map && !request.alpha_map) {
+        if (!request.map && !request.alpha_map && !request.relief) {
             return kNone;
         }
         const auto [entry, fresh] = known.try_emplace(identity(request), plan.requests.size());
@@ -64,7 +80,7 @@ Plan make_plan(std::span<const SourceMaterial> materials) {
                             .map = material.base_color_map,
                             .alpha_map = material.alpha_map,
                             .alpha_cutoff = material.alpha_cutoff});
-        uses.roughness = add({.kind = ImageRequest::Kind::scalar, .map = material.roughness_map});
+        uses.roughness = add(roughness_request(material, mode));
         uses.metalness = add({.kind = ImageRequest::Kind::scalar, .map = material.metalness_map});
         if (material.normal_map) {
             uses.normal = add({.kind = ImageRequest::Kind::normal, .map = material.normal_map});
@@ -191,7 +207,7 @@ void pass_on_warnings(const std::vector<ImageResult>& results, const Warn& warn)
 
 TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode mode,
                          const Warn& warn, const TextureProgress& progress) {
-    const Plan plan = make_plan(materials);
+    const Plan plan = make_plan(materials, mode);
     std::vector<ImageResult> results = run(plan.requests, mode, progress);
     pass_on_warnings(results, warn);
 
@@ -200,11 +216,12 @@ TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode 
     struct Placed {
         std::uint32_t texture = mesh_format::kNoTexture;
         std::uint32_t alpha_mask = mesh_format::kNoTexture;
+        bool holds_factor = false;
     };
     std::vector<Placed> placed;
     for (ImageResult& result : results) {
         const std::uint32_t texture = shelf.put(result.texture);
-        placed.push_back({texture, shelf.put(result.alpha_mask)});
+        placed.push_back({texture, shelf.put(result.alpha_mask), result.holds_factor});
     }
     const auto at = [&](std::size_t request) {
         return request == kNone ? Placed{} : placed[request];
@@ -214,7 +231,8 @@ TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode 
                                  .roughness = at(uses.roughness).texture,
                                  .metalness = at(uses.metalness).texture,
                                  .normal = at(uses.normal).texture,
-                                 .alpha_mask = at(uses.surface).alpha_mask});
+                                 .alpha_mask = at(uses.surface).alpha_mask,
+                                 .roughness_holds_factor = at(uses.roughness).holds_factor});
     }
     return set;
 }

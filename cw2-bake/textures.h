@@ -34,6 +34,7 @@ struct MaterialTextures {
     std::uint32_t metalness = mesh_format::kNoTexture;
     std::uint32_t normal = mesh_format::kNoTexture;
     std::uint32_t alpha_mask = mesh_format::kNoTexture;
+    bool roughness_holds_factor = false;  ///< the material's factor is in its texture already
 };
 
 struct TextureSet {

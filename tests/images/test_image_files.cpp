@@ -187,6 +187,12 @@ TEST(ImageFiles, ColourUnderLowAlphaIsNotPremultiplied) {
 /// Bakes a material that names `path` as its roughness, and expects one warning about it.
 void expect_refused(const std::filesystem::path& path, const std::string& cause) {
     SCOPED_TRACE(path.filename().string());
+    std::size_t in_blocks = 0;
+    const bake::TextureSet blocks =
+        bake::bake_textures({{with_roughness(map_of(path, "lib/x.mtl:42"))}}, bake::TextureMode::bc,
+                            [&](const std::string&) { ++in_blocks; }, {});
+    EXPECT_EQ(in_blocks, 1u);
+    EXPECT_TRUE(blocks.textures.empty());
     const Baked baked = bake_all({with_roughness(map_of(path, "lib/x.mtl:42"))});
     EXPECT_EQ(baked.set.materials[0].roughness, kNoTexture);
     EXPECT_TRUE(baked.set.textures.empty());

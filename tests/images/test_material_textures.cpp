@@ -273,4 +273,63 @@ TEST(Progress, RisesToOneAndNamesTheImages) {
     EXPECT_NE(std::ranges::find(names, "b.png"), names.end());
 }
 
+/// A normal map of ridges along y, 8 x 8.
+void write_ridges(const std::filesystem::path& path) {
+    write_image(path, 8, 8, 3, [](int x, int) {
+        return std::vector{0.5 + (x % 2 ? 0.2 : -0.2), 0.5, 0.5 + 0.4583};
+    });
+}
+
+TEST(Blocks, BumpsBecomeRoughnessAtSmallerLevelsWithTheFactorInIt) {
+    const TemporaryFolder folder;
+    write_ridges(folder / "ridges.png");
+    SourceMaterial smooth;
+    smooth.roughness = 0.2f;
+    smooth.normal_map = map_of(folder / "ridges.png");
+    SourceMaterial rough = smooth;
+    rough.roughness = 1.0f;
+    const auto bake_as = [&](bake::TextureMode mode) {
+        return bake::bake_textures({{smooth, rough}}, mode,
+                                   [](const std::string& line) { ADD_FAILURE() << line; }, {});
+    };
+    const TextureSet blocks = bake_as(bake::TextureMode::bc);
+    ASSERT_NE(blocks.materials[0].roughness, kNoTexture);
+    EXPECT_TRUE(blocks.materials[0].roughness_holds_factor);
+    const Texture& texture = blocks.textures[blocks.materials[0].roughness];
+    EXPECT_EQ(texture.format, mesh_format::TextureFormat::bc4_unorm);
+    EXPECT_EQ(texture.width, 8u);
+    EXPECT_EQ(texture.payload[0], std::byte{51}) << "nothing is averaged at level 0";
+    EXPECT_GT(texture.payload[4 * 8], std::byte{100}) << "level 1";
+    EXPECT_EQ(blocks.materials[1].roughness, kNoTexture) << "no bump makes it rougher";
+    EXPECT_FALSE(blocks.materials[1].roughness_holds_factor);
+    const TextureSet lossless = bake_as(bake::TextureMode::lossless);
+    EXPECT_EQ(lossless.materials[0].roughness, kNoTexture);
+    EXPECT_FALSE(lossless.materials[0].roughness_holds_factor);
+}
+
+TEST(Blocks, EveryUseHasItsFormat) {
+    const TemporaryFolder folder;
+    const auto ramp = [](int x, int y) {
+        return std::vector{x / 32.0, y / 32.0, 0.3, x < 9 ? 0.0 : 1.0};
+    };
+    write_image(folder / "color.png", 16, 16, 4, ramp);
+    write_image(folder / "grey.png", 16, 16, 1, [](int x, int) { return std::vector{x / 20.0}; });
+    write_ridges(folder / "ridges.png");
+    SourceMaterial material;
+    material.base_color_map = map_of(folder / "color.png");
+    material.roughness_map = map_of(folder / "grey.png");
+    material.metalness_map = map_of(folder / "grey.png");
+    material.normal_map = map_of(folder / "ridges.png");
+    const TextureSet set =
+        bake::bake_textures({{material}}, bake::TextureMode::bc,
+                            [](const std::string& line) { ADD_FAILURE() << line; }, {});
+    const bake::MaterialTextures& uses = set.materials[0];
+    const auto format = [&](std::uint32_t index) { return set.textures.at(index).format; };
+    EXPECT_EQ(format(uses.base_color), mesh_format::TextureFormat::bc1_srgb);
+    EXPECT_EQ(format(uses.alpha_mask), mesh_format::TextureFormat::bc4_unorm);
+    EXPECT_EQ(format(uses.roughness), mesh_format::TextureFormat::bc4_unorm);
+    EXPECT_EQ(format(uses.metalness), mesh_format::TextureFormat::bc4_unorm);
+    EXPECT_EQ(format(uses.normal), mesh_format::TextureFormat::bc5_unorm);
+}
+
 }  // namespace

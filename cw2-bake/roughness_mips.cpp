@@ -1,0 +1,95 @@
+#include "cw2-bake/roughness_mips.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <span>
+
+namespace bake {
+namespace {
+
+/// What the shader makes of smaller ones.
+constexpr float kSmallestAlpha = 0.045f;
+/// In 8 bits; smaller differences are rounding or a JPEG's noise.
+constexpr int kInvisible = 2;
+
+/// The lengths beside row `y` of a level of this size; empty where the normal map is no larger.
+std::span<const float> row_beside(MeanLengths& lengths, std::uint32_t y, std::uint32_t width,
+                                  std::uint32_t height) {
+    if (lengths.width <= width && lengths.height <= height) return {};
+    for (Level& level : lengths.levels) {
+        if (level.width > width || level.height > height) continue;
+        return level.row(static_cast<std::uint32_t>(std::uint64_t{y} * level.height / height));
+    }
+    return {};
+}
+
+}  // namespace
+
+MeanLengths mean_lengths(const TexelSource& normals) {
+    MeanLengths lengths{normals.width, normals.height, {}};
+    TexelSource rows = normals;
+    Level means;
+    while (rows.width > 1 || rows.height > 1) {
+        // What is averaged must not be overwritten while it is read.
+        Level next = halve(rows);
+        means = std::move(next);
+        rows = source_of(means);
+        Level level{means.width, means.height, 1, {}};
+        level.texels.resize(means.texels.size() / 3);
+        for (std::size_t i = 0; i < level.texels.size(); ++i) {
+            const float* n = means.texels.data() + 3 * i;
+            level.texels[i] = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        }
+        lengths.levels.push_back(std::move(level));
+    }
+    return lengths;
+}
+
+float widened_roughness(float alpha, float length) {
+    if (length >= 1.0f) return alpha;
+    const float square = std::max(alpha, kSmallestAlpha) * std::max(alpha, kSmallestAlpha);
+    const float exponent = 2.0f / (square * square) - 2.0f;
+    const float kept = length / (length + exponent * (1.0f - length));
+    return std::sqrt(std::sqrt(2.0f / (kept * exponent + 2.0f)));
+}
+
+RoughnessChain filter_roughness(const TexelSource& alphas, float factor, MeanLengths& lengths) {
+    TexelSource source = alphas;
+    source.read_row = [&](std::uint32_t y, std::span<float> texels) {
+        alphas.read_row(y, texels);
+        for (float& value : texels) value *= factor;
+    };
+    RoughnessChain chain{{}, false};
+    std::uint32_t level = 0;
+    std::uint32_t y = 0;
+    std::vector<float> widened(alphas.width);
+    std::vector<std::byte> plain(alphas.width);
+    // Rows come in order, level after level.
+    const RowEncoder encode = [&](std::span<const float> texels, std::byte* out) {
+        encode_unorm8(texels, out);
+        const auto width = static_cast<std::uint32_t>(texels.size());
+        const std::uint32_t height = mesh_format::mip_extent(alphas.height, level);
+        const std::span<const float> beside =
+            level > 0 ? row_beside(lengths, y, width, height) : std::span<const float>();
+        if (!beside.empty()) {
+            for (std::size_t x = 0; x < width; ++x) {
+                widened[x] = widened_roughness(texels[x], beside[x * beside.size() / width]);
+            }
+            std::copy_n(out, width, plain.begin());
+            encode_unorm8(std::span(widened).first(width), out);
+            for (std::size_t x = 0; x < width && !chain.widened; ++x) {
+                chain.widened = std::abs(std::to_integer<int>(out[x]) -
+                                         std::to_integer<int>(plain[x])) > kInvisible;
+            }
+        }
+        if (++y == height) {
+            y = 0;
+            ++level;
+        }
+    };
+    chain.payload = filter_chain(mesh_format::TextureFormat::r8_unorm, source, encode);
+    return chain;
+}
+
+}  // namespace bake
