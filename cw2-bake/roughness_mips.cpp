@@ -12,6 +12,9 @@ namespace {
 constexpr float kSmallestAlpha = 0.045f;
 /// In 8 bits; smaller differences are rounding or a JPEG's noise.
 constexpr int kInvisible = 2;
+/// How much of what a mean lacks in length counts. Measured in Sponza against the same view drawn
+/// with nine times the pixels: none 34.47 dB, half 34.74, three quarters 34.62, all 34.44.
+constexpr float kShare = 0.5f;
 
 /// The lengths beside row `y` of a level of this size; empty where the normal map is no larger.
 std::span<const float> row_beside(MeanLengths& lengths, std::uint32_t y, std::uint32_t width,
@@ -74,7 +77,8 @@ RoughnessChain filter_roughness(const TexelSource& alphas, float factor, MeanLen
             level > 0 ? row_beside(lengths, y, width, height) : std::span<const float>();
         if (!beside.empty()) {
             for (std::size_t x = 0; x < width; ++x) {
-                widened[x] = widened_roughness(texels[x], beside[x * beside.size() / width]);
+                const float length = 1.0f - kShare * (1.0f - beside[x * beside.size() / width]);
+                widened[x] = widened_roughness(texels[x], length);
             }
             std::copy_n(out, width, plain.begin());
             encode_unorm8(std::span(widened).first(width), out);

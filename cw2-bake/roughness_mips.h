@@ -28,8 +28,8 @@ struct RoughnessChain {
     bool widened;                    ///< a texel differs visibly from what plain averages would be
 };
 
-/// The mip chain of `factor` times `alphas`, each level widened by the bumps that its texels cover;
-/// level 0 and what is larger than the normal map cover none.
+/// The mip chain of `factor` times `alphas`, each level widened by the bumps that its texels cover,
+/// of which half is counted; level 0 and what is larger than the normal map cover none.
 RoughnessChain filter_roughness(const TexelSource& alphas, float factor, MeanLengths& lengths);
 
 }  // namespace bake

@@ -54,7 +54,7 @@ TEST(RoughnessMips, LevelZeroStaysAndTheSmallerOnesFollowToksvig) {
     const auto chain = bake::filter_roughness(constant(16, 16, 0.2f), 1.0f, lengths);
     EXPECT_TRUE(chain.widened);
     EXPECT_EQ(chain.payload[0], std::byte{51});
-    const double length = std::cos(kAngle);
+    const double length = 0.5 + 0.5 * std::cos(kAngle);  // half is counted
     const double s = exponent_of(0.2);
     const double toksvig = length / (length + s * (1.0 - length));
     const double expected = std::pow(2.0 / (toksvig * s + 2.0), 0.25);
