@@ -14,7 +14,9 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <stdexcept>
+#include <utility>
 
+#include "mesh-format/tangent_frame.h"
 #include "tests/oracle/corner_mesh.h"
 #include "tests/oracle/package.h"
 
@@ -117,6 +119,31 @@ int check_properties(const oracle::IndexedMesh& mesh, const Tangents& ours) {
     return failures;
 }
 
+/// How many corners a form's packed frames put beyond 0.1 degree and the form's own bound of the
+/// oracle's tangents, or on the other side. Left out are corners whose oracle tangent is not
+/// orthogonal to a normal of unit length (UVs without area; the bake normalises): packing makes
+/// it so.
+std::size_t far_when_packed(const oracle::IndexedMesh& mesh, const Tangents& ours,
+                            const Tangents& theirs, mesh_format::FrameForm form, double bound) {
+    std::size_t far = 0;
+    for (std::size_t c = 0; c < ours.size(); ++c) {
+        const glm::vec3 normal = mesh.normals[mesh.indices[c]];
+        const glm::vec3 truth(theirs[c]);
+        if (!(glm::length(truth) > 0.5f) || std::abs(glm::dot(truth, normal)) > 1e-4f ||
+            std::abs(glm::length(normal) - 1.0f) > 1e-4f) {
+            continue;
+        }
+        std::byte packed[mesh_format::frame_bytes(mesh_format::FrameForm::f32)];
+        mesh_format::pack_frame(
+            form, {{ours[c].x, ours[c].y, ours[c].z}, {normal.x, normal.y, normal.z}, ours[c].w},
+            packed);
+        const mesh_format::TangentFrame frame = mesh_format::unpack_frame(form, packed);
+        const glm::vec3 tangent(frame.tangent[0], frame.tangent[1], frame.tangent[2]);
+        far += frame.handedness != theirs[c].w || !(degrees_between(tangent, truth) <= 0.1 + bound);
+    }
+    return far;
+}
+
 /// Returns the number of failures, having printed a line about the mesh.
 int compare(const CornerMesh& mesh, const Tangents& theirs) {
     const oracle::IndexedMesh welded = oracle::weld(mesh);
@@ -146,6 +173,17 @@ int compare(const CornerMesh& mesh, const Tangents& theirs) {
     if (static_cast<double>(far) > 1e-4 * static_cast<double>(ours.size()) || wrong_sign != 0) {
         std::printf("    FAILED: the oracle's tangents\n");
         ++failures;
+    }
+    using mesh_format::FrameForm;
+    for (const auto& [form, bound] :
+         {std::pair(FrameForm::quat48, 0.005), std::pair(FrameForm::quat32, 0.193),
+          std::pair(FrameForm::half3, 3.3)}) {
+        const std::size_t packed = far_when_packed(welded, ours, theirs, form, bound);
+        if (static_cast<double>(packed) > 1e-4 * static_cast<double>(ours.size())) {
+            std::printf("    FAILED: %zu corners of packed form %d\n", packed,
+                        static_cast<int>(form));
+            ++failures;
+        }
     }
     return failures;
 }
