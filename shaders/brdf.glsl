@@ -58,7 +58,9 @@ vec3 schlick_fresnel(vec3 f0, float v_dot_h) {
 // `l` to the light, `v` to the camera.
 Brdf evaluate_brdf(Surface surface, vec3 l, vec3 v) {
     const vec3 n = surface.normal;
-    const vec3 h = normalize(l + v);
+    // Where the light stands exactly opposite the camera any h will do: n.l or n.v is 0.
+    const vec3 l_plus_v = l + v;
+    const vec3 h = dot(l_plus_v, l_plus_v) > 0.0 ? normalize(l_plus_v) : n;
     const float n_dot_l = clamp(dot(n, l), 0.0, 1.0);
     const float n_dot_v = clamp(dot(n, v), 0.0, 1.0);
     const float n_dot_h = clamp(dot(n, h), 0.0, 1.0);
