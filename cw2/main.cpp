@@ -6,6 +6,7 @@
 #include "cw2/headless.h"
 #include "cw2/interactive.h"
 #include "cw2/options.h"
+#include "cw2/scene.h"
 
 namespace {
 
@@ -17,6 +18,8 @@ int run(const cw2::Options& options) {
         }
         return 0;
     }
+    // A scene that is none is told before a device or a display is missed.
+    if (!options.list_devices) cw2::open_scene(options.scene);
     if (!options.list_devices && !options.output) {
         return cw2::run_window(options, CW2_SOURCE_DIR);
     }

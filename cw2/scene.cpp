@@ -286,15 +286,20 @@ std::uint64_t Scene::triangle_count() const {
     return count;
 }
 
-Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
-                 const TextureSettings& settings) {
-    const mesh_format::MappedFile file(path);
+mesh_format::MappedFile open_scene(const std::filesystem::path& path) {
+    mesh_format::MappedFile file(path);
     const std::string extension = path.extension().string();
     if (extension == ".obj" || extension == ".OBJ") {
         const std::string baked = std::filesystem::path(path).replace_extension("cw2mesh").string();
         throw mesh_format::FileError(fmt::format(
             "{0}: is a source file; bake it first: cw2-bake '{0}' -o '{1}'", path.string(), baked));
     }
+    return file;
+}
+
+Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
+                 const TextureSettings& settings) {
+    const mesh_format::MappedFile file = open_scene(path);
     Document document = mesh_format::parse(file.bytes(), path.string());
     DecodedGeometry decoded;
     if (document.is_encoded()) {

@@ -84,8 +84,11 @@ class Scene {
     std::vector<SceneChunk> chunks_;
 };
 
-/// Reads, checks and uploads a .cw2mesh file. Throws mesh_format::FileError (a source format is
-/// told to be baked first, with the command) or VulkanError.
+/// Maps a scene file. Throws mesh_format::FileError, for a source format with the command that
+/// bakes it.
+mesh_format::MappedFile open_scene(const std::filesystem::path& path);
+
+/// Reads, checks and uploads a .cw2mesh file. Throws mesh_format::FileError or VulkanError.
 Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
                  const TextureSettings& settings);
 
