@@ -78,29 +78,13 @@ Renderer::Renderer(const Device& device, const Layouts& layouts, const ShaderCod
 }
 
 void Renderer::make_slots(std::uint32_t count) {
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, count};
-    const VkDescriptorPoolCreateInfo pool_info{
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = count,
-        .poolSizeCount = 1,
-        .pPoolSizes = &size};
-    VkDescriptorPool pool = VK_NULL_HANDLE;
-    check(vkCreateDescriptorPool(device_.get(), &pool_info, nullptr, &pool),
-          "vkCreateDescriptorPool");
-    descriptor_pool_ = DescriptorPool(device_.get(), pool);
-
-    const VkDescriptorSetLayout layout = layouts_.scene_set.get();
+    descriptor_pool_ =
+        make_descriptor_pool(device_, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, count, count);
     for (std::uint32_t i = 0; i < count; ++i) {
         Slot slot;
         slot.uniforms = make_buffer(device_, sizeof(interop::SceneUniforms),
                                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::upload);
-        const VkDescriptorSetAllocateInfo info{
-            .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-            .descriptorPool = pool,
-            .descriptorSetCount = 1,
-            .pSetLayouts = &layout};
-        check(vkAllocateDescriptorSets(device_.get(), &info, &slot.set),
-              "vkAllocateDescriptorSets");
+        slot.set = allocate_set(device_, descriptor_pool_.get(), layouts_.scene_set.get());
         const VkDescriptorBufferInfo buffer{slot.uniforms.handle.get(), 0, VK_WHOLE_SIZE};
         const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                                          .dstSet = slot.set,

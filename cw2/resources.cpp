@@ -146,6 +146,29 @@ void read_back(VkCommandBuffer commands, VkImage image, VkExtent2D extent, const
     vkCmdPipelineBarrier2(commands, &dependency);
 }
 
+DescriptorPool make_descriptor_pool(const Device& device, VkDescriptorType type,
+                                    std::uint32_t descriptors, std::uint32_t sets) {
+    const VkDescriptorPoolSize size{type, descriptors};
+    const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                          .maxSets = sets,
+                                          .poolSizeCount = 1,
+                                          .pPoolSizes = &size};
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    check(vkCreateDescriptorPool(device.get(), &info, nullptr, &pool), "vkCreateDescriptorPool");
+    return {device.get(), pool};
+}
+
+VkDescriptorSet allocate_set(const Device& device, VkDescriptorPool pool,
+                             VkDescriptorSetLayout layout) {
+    const VkDescriptorSetAllocateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                           .descriptorPool = pool,
+                                           .descriptorSetCount = 1,
+                                           .pSetLayouts = &layout};
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    check(vkAllocateDescriptorSets(device.get(), &info, &set), "vkAllocateDescriptorSets");
+    return set;
+}
+
 CommandPool make_command_pool(const Device& device) {
     const VkCommandPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                        .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,

@@ -65,6 +65,12 @@ void image_barrier(VkCommandBuffer commands, VkImage image, VkImageAspectFlags a
 /// tightly packed, for the host to read once the commands are done.
 void read_back(VkCommandBuffer commands, VkImage image, VkExtent2D extent, const Buffer& buffer);
 
+/// A pool for `sets` descriptor sets that together hold `descriptors` of one type.
+DescriptorPool make_descriptor_pool(const Device& device, VkDescriptorType type,
+                                    std::uint32_t descriptors, std::uint32_t sets);
+VkDescriptorSet allocate_set(const Device& device, VkDescriptorPool pool,
+                             VkDescriptorSetLayout layout);
+
 /// A pool whose command buffers are recorded anew each time.
 CommandPool make_command_pool(const Device& device);
 VkCommandBuffer allocate_commands(const Device& device, VkCommandPool pool);

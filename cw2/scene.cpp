@@ -225,27 +225,12 @@ void Scene::upload_textures(const Device& device, const Document& document, bool
 std::vector<VkDescriptorSet> Scene::make_material_sets(const Device& device, const Layouts& layouts,
                                                        const Document& document) {
     const auto set_count = static_cast<std::uint32_t>(document.materials.size());
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 5 * set_count};
-    const VkDescriptorPoolCreateInfo pool_info{
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = set_count,
-        .poolSizeCount = 1,
-        .pPoolSizes = &size};
-    VkDescriptorPool pool = VK_NULL_HANDLE;
-    check(vkCreateDescriptorPool(device.get(), &pool_info, nullptr, &pool),
-          "vkCreateDescriptorPool");
-    descriptor_pool_ = DescriptorPool(device.get(), pool);
-
+    descriptor_pool_ = make_descriptor_pool(device, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                            5 * set_count, set_count);
     std::vector<VkDescriptorSet> sets;
     for (const MaterialRecord& material : document.materials) {
-        const VkDescriptorSetLayout layout = layouts.material_set(shading_of(material));
-        const VkDescriptorSetAllocateInfo info{
-            .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-            .descriptorPool = pool,
-            .descriptorSetCount = 1,
-            .pSetLayouts = &layout};
-        VkDescriptorSet set = VK_NULL_HANDLE;
-        check(vkAllocateDescriptorSets(device.get(), &info, &set), "vkAllocateDescriptorSets");
+        const VkDescriptorSet set = allocate_set(device, descriptor_pool_.get(),
+                                                 layouts.material_set(shading_of(material)));
         write_material_set(device, set, material);
         sets.push_back(set);
     }
