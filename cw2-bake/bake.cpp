@@ -79,8 +79,8 @@ std::vector<UvBudget> uv_budgets(const TextureSet& textures) {
 struct Tables {
     std::vector<MaterialRecord> materials;
     std::vector<TextureRecord> textures;
+    std::vector<std::span<const std::byte>> payloads;  ///< of the textures
     std::string strings;
-    std::vector<std::byte> texels;
 
     StringRef add(std::string_view text) {
         const StringRef ref{static_cast<std::uint32_t>(strings.size()),
@@ -110,17 +110,15 @@ MaterialRecord material_record(const SourceMaterial& source, const MaterialTextu
     return record;
 }
 
-/// Takes the payloads out of `set`, so that no texel is held twice for long.
-Tables make_tables(const std::vector<SourceMaterial>& materials, TextureSet& set) {
+/// The payloads stay in `set`.
+Tables make_tables(const std::vector<SourceMaterial>& materials, const TextureSet& set) {
     Tables tables;
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const StringRef name = tables.add(materials[i].name);
         tables.materials.push_back(material_record(materials[i], set.materials[i], name));
     }
     std::uint64_t texel_bytes = 0;
-    for (const Texture& texture : set.textures) texel_bytes += texture.payload.size();
-    tables.texels.reserve(texel_bytes);
-    for (Texture& texture : set.textures) {
+    for (const Texture& texture : set.textures) {
         tables.textures.push_back(
             {.name = tables.add(texture.name),
              .format = texture.format,
@@ -129,10 +127,11 @@ Tables make_tables(const std::vector<SourceMaterial>& materials, TextureSet& set
              .height = texture.height,
              .mip_count = mesh_format::full_mip_count(texture.width, texture.height),
              .psnr = texture.psnr,
-             .offset = tables.texels.size(),
-             .size = texture.payload.size()});
-        tables.texels.insert(tables.texels.end(), texture.payload.begin(), texture.payload.end());
-        texture.payload = {};
+             .offset = texel_bytes,
+             .size = texture.payload.size(),
+             .checksum = texture.checksum});
+        tables.payloads.push_back(texture.payload);
+        texel_bytes += texture.payload.size();
     }
     return tables;
 }
@@ -158,7 +157,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
     if (settings.z_up) turn_z_up(scene);
     generate_normals(scene);
     clock.end("normals");
-    TextureSet textures = make_textures(settings, scene, warn);
+    const TextureSet textures = make_textures(settings, scene, warn);
     clock.end("textures");
     const std::vector<UvBudget> budgets = uv_budgets(textures);
     const std::vector<ChunkedMesh> meshes = make_meshes(scene, budgets);
@@ -173,8 +172,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
                                    .chunks = geometry.chunks,
                                    .materials = tables.materials,
                                    .textures = tables.textures,
-                                   .strings = tables.strings,
-                                   .texels = tables.texels};
+                                   .strings = tables.strings};
     EncodedGeometry encoded;
     if (settings.compress) {
         encoded = compress(geometry);
@@ -184,7 +182,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
         document.vertices = geometry.vertices;
         document.indices = geometry.indices;
     }
-    const std::uint64_t bytes = mesh_format::write(document, settings.output);
+    const std::uint64_t bytes = mesh_format::write(document, tables.payloads, settings.output);
     clock.end("write");
     if (settings.stats) write_stats(settings, {bytes, measure(meshes), geometry.scene, clock});
     return fmt::format("{}\n{}", settings.output.string(), summary(document, bytes));

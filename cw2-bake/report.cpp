@@ -62,6 +62,7 @@ struct Counts {
     std::size_t wide_meshes = 0;     ///< whose UVs 16 bits would not hold exactly enough
     std::uint64_t vertex_bytes = 0;  ///< as stored
     std::uint64_t index_bytes = 0;
+    std::uint64_t texel_bytes = 0;
     float extent = 0.0f;  ///< longest side of the bounding box
 };
 
@@ -78,6 +79,7 @@ Counts count(const Document& document) {
         if (material.flags & mesh_format::kAlphaMask) ++counts.masked_materials;
     }
     counts.vertex_bytes = document.vertices.size() + document.encoded_vertices.size();
+    for (const TextureRecord& texture : document.textures) counts.texel_bytes += texture.size;
     counts.index_bytes = document.indices.size_bytes() + document.encoded_indices.size();
     for (int axis = 0; axis < 3; ++axis) {
         counts.extent = std::max(counts.extent,
@@ -202,8 +204,7 @@ std::string json_array(const Records& records, Format format) {
 
 std::string summary(const Document& document, std::uint64_t file_bytes) {
     const Counts counts = count(document);
-    const std::uint64_t data_bytes =
-        counts.vertex_bytes + counts.index_bytes + document.texels.size();
+    const std::uint64_t data_bytes = counts.vertex_bytes + counts.index_bytes + counts.texel_bytes;
     const std::string wide =
         counts.wide_meshes == 0
             ? ""
@@ -219,7 +220,7 @@ std::string summary(const Document& document, std::uint64_t file_bytes) {
                grouped(counts.vertices), grouped(counts.triangles), document.meshes.size(),
                document.chunks.size(), document.materials.size(), counts.masked_materials,
                document.textures.size(), grouped(file_bytes), grouped(counts.vertex_bytes),
-               grouped(counts.index_bytes), grouped(document.texels.size()),
+               grouped(counts.index_bytes), grouped(counts.texel_bytes),
                grouped(file_bytes - data_bytes), position_error(document, counts),
                document.scene.frame_error_max, document.scene.frame_error_mean,
                document.scene.uv_error) +
@@ -278,7 +279,7 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
         "  \"frame_error_max_degrees\": {},\n  \"uv_error_texels\": {},\n  \"meshes\": {},\n"
         "  \"materials\": {},\n  \"textures\": {}\n}}\n",
         mesh_format::kVersion, file_bytes, counts.vertex_bytes, counts.index_bytes,
-        document.texels.size(), counts.vertices, counts.triangles, scene.bounds_min[0],
+        counts.texel_bytes, counts.vertices, counts.triangles, scene.bounds_min[0],
         scene.bounds_min[1], scene.bounds_min[2], scene.bounds_max[0], scene.bounds_max[1],
         scene.bounds_max[2], scene.radius, scene.position_error, scene.frame_error_mean,
         scene.frame_error_max, scene.uv_error, meshes, materials, textures);

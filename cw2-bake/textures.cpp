@@ -15,6 +15,7 @@
 #include <unordered_map>
 
 #include "cw2-bake/material_images.h"
+#include "mesh-format/file.h"
 
 namespace bake {
 namespace {
@@ -118,6 +119,11 @@ std::vector<Batch> make_batches(const std::vector<ImageRequest>& requests) {
     return batches;
 }
 
+/// Here, in parallel and soon after the texels were written.
+void seal(std::optional<Texture>& texture) {
+    if (texture) texture->checksum = mesh_format::checksum(texture->payload);
+}
+
 std::vector<ImageResult> run(const std::vector<ImageRequest>& requests, TextureMode mode,
                              const TextureProgress& progress) {
     const std::vector<Batch> batches = make_batches(requests);
@@ -144,6 +150,8 @@ std::vector<ImageResult> run(const std::vector<ImageRequest>& requests, TextureM
             ImageCache images;
             for (const std::size_t request : batch.requests) {
                 results[request] = make_textures(requests[request], mode, images);
+                seal(results[request].texture);
+                seal(results[request].alpha_mask);
             }
             report(batch, batch.weight);
         },
@@ -161,34 +169,26 @@ class Shelf {
         if (!texture) {
             return mesh_format::kNoTexture;
         }
-        const auto [begin, end] = known_.equal_range(digest(*texture));
+        const auto [begin, end] = known_.equal_range(texture->checksum);
         for (auto entry = begin; entry != end; ++entry) {
             if (equal(textures_[entry->second], *texture)) {
                 return entry->second;
             }
         }
         const auto index = static_cast<std::uint32_t>(textures_.size());
-        known_.emplace(digest(*texture), index);
+        known_.emplace(texture->checksum, index);
         textures_.push_back(std::move(*texture));
         return index;
     }
 
  private:
-    /// The smallest levels, which average over all the others.
-    static std::string_view digest(const Texture& texture) {
-        const std::string_view bytes(reinterpret_cast<const char*>(texture.payload.data()),
-                                     texture.payload.size());
-        return bytes.substr(bytes.size() - std::min<std::size_t>(bytes.size(), 256));
-    }
-
     static bool equal(const Texture& a, const Texture& b) {
-        return std::tie(a.format, a.clamp, a.width, a.height, a.payload) ==
-               std::tie(b.format, b.clamp, b.width, b.height, b.payload);
+        return std::tie(a.format, a.clamp, a.width, a.height, a.psnr, a.payload) ==
+               std::tie(b.format, b.clamp, b.width, b.height, b.psnr, b.payload);
     }
 
     std::vector<Texture>& textures_;
-    std::unordered_multimap<std::string_view, std::uint32_t>
-        known_;  ///< digests point into textures_
+    std::unordered_multimap<std::uint64_t, std::uint32_t> known_;  ///< by checksum
 };
 
 /// One warning an image, in order of first use.

@@ -25,6 +25,7 @@ struct Texture {
     std::uint32_t height = 0;
     float psnr = 0.0f;  ///< as in mesh_format::TextureRecord
     std::vector<std::byte> payload;
+    std::uint64_t checksum = 0;  ///< mesh_format::checksum() of the payload, once it is finished
 };
 
 /// What one material samples: indices into TextureSet::textures, or mesh_format::kNoTexture.

@@ -17,10 +17,11 @@ struct Document {
     std::span<const ChunkRecord> chunks;
     std::span<const MaterialRecord> materials;
     std::span<const TextureRecord> textures;
+    std::span<const SourceRecord> sources;
     std::string_view strings;
     std::span<const std::byte> vertices;
     std::span<const std::uint16_t> indices;
-    std::span<const std::byte> texels;
+    std::span<const std::byte> texels;  ///< of a file that was read
     /// Of a compressed file; then vertices and indices are empty until somebody decodes these.
     std::span<const std::byte> encoded_vertices;
     std::span<const std::byte> encoded_indices;
@@ -29,6 +30,10 @@ struct Document {
 
     /// The text that `ref` names.
     std::string_view text(StringRef ref) const { return strings.substr(ref.offset, ref.length); }
+    /// The payload of a texture of a file that was read.
+    std::span<const std::byte> payload(const TextureRecord& texture) const {
+        return texels.subspan(texture.offset, texture.size);
+    }
 };
 
 /// Throws FileError, which calls the document `name`, unless everything in it is in order: every
@@ -36,16 +41,25 @@ struct Document {
 /// document can only be checked once they are decoded.
 void check(const Document& document, std::string_view name);
 
+/// Whether parse() compares the payloads of textures with their checksums.
+enum class Payloads {
+    checked,
+    unchecked,  ///< by who uses one
+};
+
 /// Checks `bytes` completely and returns the document in it: magic, version, sizes, checksums,
 /// and what check() asks. `bytes` starts at
 /// a multiple of 16 and must outlive the document; `name` is used in messages.
 /// Throws FileError; never reads outside `bytes`, allocates nothing that grows with the input.
-Document parse(std::span<const std::byte> bytes, std::string_view name);
+Document parse(std::span<const std::byte> bytes, std::string_view name,
+               Payloads payloads = Payloads::checked);
 
 /// Throws FileError unless `document` passes check(), then writes it beside `path`
-/// and renames it, so that `path` holds either its old contents or the whole new file. The same
-/// document gives the same bytes. Returns the file's size in bytes.
-std::uint64_t write(const Document& document, const std::filesystem::path& path);
+/// and renames it, so that `path` holds either its old contents or the whole new file. `payloads`
+/// are those of its textures, one each, and take the place of Document::texels; their checksums
+/// are in the records. The same document gives the same bytes. Returns the file's size in bytes.
+std::uint64_t write(const Document& document, std::span<const std::span<const std::byte>> payloads,
+                    const std::filesystem::path& path);
 
 /// Detects altered bytes, no defence against intent: 64-bit words, little-endian and the last one
 /// zero-padded, are folded into four lanes (word i into lane i mod 4) by

@@ -9,10 +9,12 @@
 //   chunks     ChunkRecord[], the chunks of all meshes, mesh after mesh
 //   materials  MaterialRecord[]
 //   textures   TextureRecord[]
+//   sources    SourceRecord[]
 //   strings    UTF-8 bytes that StringRef points into, no terminators
 //   vertices   packed vertices of all meshes, mesh after mesh
 //   indices    uint16[], triangle lists; an index counts from its mesh's first vertex
-//   texels     the mip chains of all textures, texture after texture
+//   texels     the payloads of all textures, texture after texture; TextureRecord has the checksum
+//              of each, the section's own is 0
 //   encoded vertices, encoded indices
 //              in a compressed file, what becomes the sections vertices and indices, which are
 //              then empty: uint32[], the stored size of each mesh's part, then those parts. A part
@@ -31,7 +33,7 @@ namespace mesh_format {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 inline constexpr std::array<char, 8> kMagic{'C', 'W', '2', 'M', 'E', 'S', 'H', '\0'};
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 /// A mesh's vertices are addressed by 16-bit indices.
 inline constexpr std::uint32_t kMaxMeshVertices = 65'536;
@@ -45,6 +47,7 @@ enum class SectionKind : std::uint32_t {
     chunks,
     materials,
     textures,
+    sources,
     strings,
     vertices,
     indices,
@@ -58,7 +61,7 @@ inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(SectionKin
 struct Section {
     std::uint64_t offset;    ///< bytes from the start of the file, a multiple of kSectionAlignment
     std::uint64_t size;      ///< bytes, without padding
-    std::uint64_t checksum;  ///< checksum() of the section's bytes, see file.h
+    std::uint64_t checksum;  ///< checksum() of the section's bytes, see file.h; of texels 0
 };
 
 struct Header {
@@ -192,9 +195,27 @@ struct TextureRecord {
     /// Of level 0 in blocks against the texels that it stands for, dB, at most kExactPsnr; also
     /// where it was too low, so that the texture stayed as it was. 0 where blocks were not tried.
     float psnr;
-    std::uint64_t offset;     ///< bytes into the texels section, a multiple of kMipAlignment
-    std::uint64_t size;       ///< mip_chain_bytes(format, width, height)
+    std::uint64_t offset;    ///< bytes into the texels section, where the payload before it ends
+    std::uint64_t size;      ///< mip_chain_bytes(format, width, height)
+    std::uint64_t checksum;  ///< checksum() of the payload
 };
+
+enum SourceFlags : std::uint32_t {
+    kHoldsFactor = 1,  ///< the texture is multiplied with its material's factor already
+};
+
+/// What a map of a material became, for the next bake of the same scene: where an equal key comes
+/// up again, these textures, or that there are none, are what it would make.
+struct SourceRecord {
+    /// A hash of the images' bytes and of all that the textures depend on beside them, the baker's
+    /// code included.
+    std::uint64_t key[2];
+    std::uint32_t texture;     ///< index into the textures section, or kNoTexture
+    std::uint32_t alpha_mask;  ///< the same
+    std::uint32_t flags;       ///< SourceFlags
+    std::uint32_t reserved;    ///< 0
+};
+
 inline constexpr std::uint64_t kMipAlignment = 16;
 inline constexpr float kExactPsnr = 100.0f;
 inline constexpr std::uint32_t kMaxTextureSize = 16'384;
@@ -202,7 +223,8 @@ inline constexpr std::uint32_t kMaxTextureSize = 16'384;
 static_assert(sizeof(Section) == 24 && sizeof(Header) == 32 + 24 * kSectionCount);
 static_assert(sizeof(SceneRecord) == 64 && sizeof(MeshRecord) == 96);
 static_assert(sizeof(ChunkRecord) == 40);
-static_assert(sizeof(MaterialRecord) == 56 && sizeof(TextureRecord) == 48);
+static_assert(sizeof(MaterialRecord) == 56 && sizeof(TextureRecord) == 56);
+static_assert(sizeof(SourceRecord) == 32);
 static_assert(std::is_trivially_copyable_v<Header> && std::is_trivially_copyable_v<MeshRecord>);
 
 constexpr std::uint32_t position_bytes(PositionForm form) {

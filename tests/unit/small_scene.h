@@ -26,6 +26,7 @@ struct SmallScene {
     std::vector<ChunkRecord> chunks;
     std::vector<MaterialRecord> materials;
     std::vector<TextureRecord> textures;
+    std::vector<SourceRecord> sources;
     std::string strings = "stoneleafmask.png";
     Bytes vertices;
     std::vector<std::uint16_t> indices{0, 1, 2, 2, 1, 3, 0, 1, 2};
@@ -55,6 +56,11 @@ struct SmallScene {
         materials.back().alpha_mask_texture = 1;
         add_texture(TextureFormat::rgba8_srgb, 1, 1);
         add_texture(TextureFormat::r8_unorm, 5, 3);
+        sources.push_back({.key = {1, 2}, .texture = 0, .alpha_mask = 1});
+        sources.push_back({.key = {3, 4},
+                           .texture = kNoTexture,
+                           .alpha_mask = kNoTexture,
+                           .flags = kHoldsFactor});
         scene.vertex_bytes = vertices.size();
         scene.index_count = indices.size();
         scene.position_step = 0.25f;
@@ -68,12 +74,19 @@ struct SmallScene {
                 .chunks = chunks,
                 .materials = materials,
                 .textures = textures,
+                .sources = sources,
                 .strings = strings,
                 .vertices = vertices,
                 .indices = indices,
                 .texels = texels,
                 .encoded_vertices = encoded_vertices,
                 .encoded_indices = encoded_indices};
+    }
+
+    std::vector<std::span<const std::byte>> payloads() const {
+        std::vector<std::span<const std::byte>> parts;
+        for (const TextureRecord& texture : textures) parts.push_back(document().payload(texture));
+        return parts;
     }
 
     /// Moves the geometry to the sections of a compressed file. What the parts hold matters only to
@@ -119,7 +132,9 @@ struct SmallScene {
                             .mip_count = full_mip_count(width, height),
                             .offset = texels.size(),
                             .size = mip_chain_bytes(format, width, height)});
-        texels.resize(texels.size() + textures.back().size, std::byte{200});
+        texels.resize(texels.size() + textures.back().size,
+                      static_cast<std::byte>(200 + textures.size()));
+        textures.back().checksum = checksum(document().payload(textures.back()));
     }
 };
 
@@ -130,7 +145,7 @@ inline Bytes bytes_of(const std::filesystem::path& path) {
 
 inline Bytes written(const SmallScene& scene) {
     const TemporaryFolder folder;
-    const std::uint64_t size = write(scene.document(), folder / "scene");
+    const std::uint64_t size = write(scene.document(), scene.payloads(), folder / "scene");
     EXPECT_EQ(size, std::filesystem::file_size(folder / "scene"));
     return bytes_of(folder / "scene");
 }
@@ -166,6 +181,8 @@ class Forgery {
         return record<TextureRecord>(SectionKind::textures, i);
     }
 
+    SourceRecord& source(std::size_t i) { return record<SourceRecord>(SectionKind::sources, i); }
+
     const Bytes& sealed() {
         for (Section& section : header().sections) {
             if (section.offset > bytes_.size() || section.size > bytes_.size() - section.offset) {
@@ -173,6 +190,7 @@ class Forgery {
             }
             section.checksum = checksum(std::span(bytes_).subspan(section.offset, section.size));
         }
+        section(SectionKind::texels).checksum = 0;
         header().checksum = 0;
         header().checksum = checksum(std::span(bytes_).first(sizeof(Header)));
         return bytes_;

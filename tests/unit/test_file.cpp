@@ -19,6 +19,7 @@ void expect_equal(const Document& a, const Document& b) {
     expect_equal(a.chunks, b.chunks);
     expect_equal(a.materials, b.materials);
     expect_equal(a.textures, b.textures);
+    expect_equal(a.sources, b.sources);
     EXPECT_EQ(a.strings, b.strings);
     expect_equal(a.vertices, b.vertices);
     expect_equal(a.indices, b.indices);
@@ -38,7 +39,7 @@ TEST(File, WhatIsWrittenComesBack) {
         EXPECT_EQ(document.text(document.materials[1].name), "leaf");
 
         const TemporaryFolder folder;
-        write(document, folder / "again");
+        write(document, scene.payloads(), folder / "again");
         EXPECT_EQ(bytes_of(folder / "again"), bytes);
     }
 }
@@ -54,6 +55,20 @@ TEST(File, EveryTruncationIsRefused) {
             EXPECT_TRUE(complaint(part).starts_with("the file: ")) << size << " bytes";
         }
     }
+}
+
+TEST(File, PayloadsAreCheckedWhenAskedFor) {
+    Bytes bytes = written({});
+    const Document whole = parse(bytes, "the file");
+    const std::size_t at = static_cast<std::size_t>(whole.texels.data() - bytes.data()) + 20;
+    bytes[at] ^= std::byte{1};
+    EXPECT_NE(complaint(bytes).find("texture 1: "), std::string::npos);
+    const Document document = parse(bytes, "the file", Payloads::unchecked);
+    const auto intact = [&](const TextureRecord& texture) {
+        return checksum(document.payload(texture)) == texture.checksum;
+    };
+    EXPECT_TRUE(intact(document.textures[0]));
+    EXPECT_FALSE(intact(document.textures[1]));
 }
 
 TEST(File, BytesAfterTheEndAreRefused) {
@@ -82,7 +97,7 @@ TEST(File, WritingAnInvalidDocumentLeavesTheTargetAsItWas) {
     std::ofstream(folder / "scene") << "what was there";
     SmallScene scene;
     scene.indices[2] = 4;
-    EXPECT_THROW(write(scene.document(), folder / "scene"), FileError);
+    EXPECT_THROW(write(scene.document(), scene.payloads(), folder / "scene"), FileError);
     EXPECT_EQ(std::filesystem::file_size(folder / "scene"), 14u);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
