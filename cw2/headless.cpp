@@ -112,22 +112,24 @@ void render_to_file(const Device& device, const Options& options) {
     Timings timings;
     Clock::time_point start = Clock::now();
     const Layouts layouts(device);
-    const Scene scene = load_scene(device, layouts, options.scene, texture_settings(options, device));
+    const Scene scene =
+        load_scene(device, layouts, options.scene, texture_settings(options, device));
     timings.load = milliseconds_since(start);
 
-    const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+    const float aspect =
+        static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     FrameSettings settings = frame_settings(options, scene.bounds(), aspect);
     settings.light.position = orbit(settings.light.position, scene.bounds().center, options.time);
 
     start = Clock::now();
     Renderer renderer(device, layouts, built_in_shaders(), OffscreenTarget::format_of(kind),
                       static_cast<VkSampleCountFlagBits>(options.samples.value_or(4)), 1);
-    OffscreenTarget target(device, {options.width, options.height}, kind);
+    OffscreenTarget target(device, {options.size.width, options.size.height}, kind);
     target.render(renderer, scene, settings);
     timings.first_frame = milliseconds_since(start);
 
     start = Clock::now();
-    write_image(*options.output, options.width, options.height, target.pixels());
+    write_image(*options.output, options.size.width, options.size.height, target.pixels());
     timings.save = milliseconds_since(start);
 
     for (std::uint32_t i = 0; i < options.bench_frames; ++i) {
@@ -138,7 +140,7 @@ void render_to_file(const Device& device, const Options& options) {
     }
     if (options.bench_frames > 0) {
         fmt::print("{} frames of {}x{}: median {:.2f} ms, device {:.2f} ms\n", options.bench_frames,
-                   options.width, options.height, median(timings.frames),
+                   options.size.width, options.size.height, median(timings.frames),
                    median(timings.gpu_frames));
     }
     if (options.stats) write_stats(*options.stats, device, scene, timings);

@@ -182,15 +182,16 @@ class Session {
 }  // namespace
 
 int run_window(const Options& options, const std::filesystem::path& sources) {
-    Window window(fmt::format("{} - cw2", options.scene.filename().string()), options.width,
-                  options.height);
+    Window window(fmt::format("{} - cw2", options.scene.filename().string()), options.size.width,
+                  options.size.height);
     const Instance instance(options.validation, window.instance_extensions());
     {
         const SurfaceHandle surface = window.make_surface(instance);
         const Device device(instance, options.device, surface.get());
         require_size(options, device);
         const Layouts layouts(device);
-        const Scene scene = load_scene(device, layouts, options.scene, texture_settings(options, device));
+        const Scene scene =
+            load_scene(device, layouts, options.scene, texture_settings(options, device));
         const std::uint32_t samples = options.samples.value_or(device.is_cpu() ? 1 : 4);
         Presenter presenter(device, surface.get(), layouts, built_in_shaders(),
                             static_cast<VkSampleCountFlagBits>(samples));

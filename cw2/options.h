@@ -1,25 +1,31 @@
-// The command line.
+// The command line, and the config files that stand for one.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "cw2/camera.h"
+#include "cw2/config.h"
 #include "cw2/renderer.h"
 #include "cw2/scene.h"
 #include "cw2/view.h"
 
 namespace cw2 {
 
+/// Pixels, neither 0.
+struct PictureSize {
+    std::uint32_t width = 1280;
+    std::uint32_t height = 720;
+    bool operator==(const PictureSize&) const = default;
+};
+
 struct Options {
     std::filesystem::path scene;
     std::optional<std::filesystem::path> output;  ///< none: open a window
-    std::uint32_t width = 1280;
-    std::uint32_t height = 720;
+    PictureSize size;
     View view = interop::kViewShaded;
     std::optional<std::uint32_t> samples;  ///< 1 or 4; none: by the device and the output
     std::optional<glm::vec3> camera_position;
@@ -39,15 +45,19 @@ struct Options {
     bool validation = false;
     std::optional<std::filesystem::path> stats;
     std::uint32_t bench_frames = 0;  ///< further frames to time
+
+    bool operator==(const Options&) const = default;
 };
 
-/// A command line that does not make sense; what() is one line.
-class UsageError : public std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
-
-/// Reads the command line. `--help` and `--version` print and give nothing. Throws UsageError.
+/// Reads the command line, and the file that its --config names, whose keys are the names of the
+/// options. Relative paths in either are relative to the working directory. `--help` and
+/// `--version` print and give nothing. Throws UsageError, and mesh_format::FileError where the
+/// config file cannot be read.
 std::optional<Options> parse_options(int argc, const char* const* argv);
+
+/// Writes a file that `--config` reads as these options, every number exactly. It replaces `path`
+/// whole. Throws mesh_format::FileError.
+void write_config(const std::filesystem::path& path, const Options& options);
 
 /// What the options ask a frame to show of a scene of these bounds, at the start of the light's
 /// orbit. `aspect` is the picture's width / height.

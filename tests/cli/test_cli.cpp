@@ -220,6 +220,27 @@ TEST_F(Cli, Cw2RefusesWrongUsage) {
     expect_refusal("cw2", 2, {"scene.cw2mesh", "--bench", "3"}, {"--output"});
 }
 
+TEST_F(Cli, AConfigFileStandsForItsOptions) {
+    write_file(here("shot.toml"),
+               "scene = 'scene.cw2mesh'\nsize = '32x24'\nview = 'normal'\n"
+               "camera-position = [0.5, 1, 2]\noutput = 'from_config.png'\n");
+    EXPECT_EQ(cw2({"--config", "shot.toml"}).err, "");
+    EXPECT_EQ(cw2({"scene.cw2mesh", "--size", "32x24", "--view", "normal", "--camera-position",
+                   "0.5,1,2", "--output", "from_options.png"})
+                  .err,
+              "");
+    EXPECT_TRUE(bytes_of(here("from_config.png")).starts_with("\x89PNG"));
+    EXPECT_TRUE(bytes_of(here("from_config.png")) == bytes_of(here("from_options.png")));
+
+    const Words with_config{"scene.cw2mesh", "--output", "new.png", "--config", "bad.toml"};
+    write_file(here("bad.toml"), "ambient = [0, 0, 0]\nambiance = [0, 0, 0]\n");
+    expect_refusal("cw2", 2, with_config, {"bad.toml:2: ", "'ambiance'"});
+    write_file(here("bad.toml"), "\nsamples = 3\n");
+    expect_refusal("cw2", 2, with_config, {"bad.toml:2: samples: ", "'3'"});
+    expect_refusal("cw2", 1, {"scene.cw2mesh", "--output", "new.png", "--config", "gone.toml"},
+                   {"gone.toml: ", "No such file"});
+}
+
 TEST_F(Cli, ValuesMayStartWithAMinus) {
     const Outcome outcome =
         cw2({"scene.cw2mesh", "--output", "minus.png", "--size", "16x16", "--camera-position",

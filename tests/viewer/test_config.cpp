@@ -1,0 +1,210 @@
+// Config files: what is written is read again, and what makes no sense is told with its place.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "cw2/config.h"
+#include "cw2/options.h"
+#include "mesh-format/io.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+using namespace cw2;
+using Words = std::vector<std::string>;
+
+std::optional<Options> parse(const Words& arguments) {
+    std::vector<const char*> words{"cw2"};
+    for (const std::string& argument : arguments) words.push_back(argument.c_str());
+    return parse_options(static_cast<int>(words.size()), words.data());
+}
+
+std::string text_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class RandomOptions {
+ public:
+    explicit RandomOptions(unsigned seed) : random_(seed) {}
+
+    Options make() {
+        Options options;
+        options.scene = text();
+        options.output = text() + ".png";
+        options.size = {1 + below(20000), 1 + below(20000)};
+        options.view = below(interop::kViewCount);
+        maybe([&] { options.samples = below(2) == 0 ? 1 : 4; });
+        maybe([&] { options.camera_position = vector(); });
+        maybe([&] { options.camera_target = vector(); });
+        options.vertical_fov = std::uniform_real_distribution(1.0f, 179.0f)(random_);
+        maybe([&] { options.light_position = vector(); });
+        options.light_color = vector();
+        options.ambient = vector();
+        options.background = vector();
+        options.time = number<double, std::uint64_t>();
+        options.normal_map = below(2) == 0;
+        options.alpha_mask = below(2) == 0;
+        maybe([&] { options.anisotropy = 1 + below(16); });
+        maybe([&] { options.device = text(); });
+        options.list_devices = below(2) == 0;
+        options.list_views = below(2) == 0;
+        options.validation = below(2) == 0;
+        maybe([&] { options.stats = text(); });
+        options.bench_frames = below(1000);
+        return options;
+    }
+
+ private:
+    std::uint32_t below(std::uint32_t end) {
+        return std::uniform_int_distribution<std::uint32_t>(0, end - 1)(random_);
+    }
+    template <typename Change>
+    void maybe(Change change) {
+        if (below(2) == 0) change();
+    }
+    /// Any normal number, and 0, with either sign.
+    template <typename Float, typename Bits>
+    Float number() {
+        if (below(10) == 0) return std::copysign(Float{0}, below(2) == 0 ? Float{1} : Float{-1});
+        for (;;) {
+            const auto value = std::bit_cast<Float>(std::uniform_int_distribution<Bits>()(random_));
+            if (std::isnormal(value)) return value;
+        }
+    }
+    glm::vec3 vector() {
+        return {number<float, std::uint32_t>(), number<float, std::uint32_t>(),
+                number<float, std::uint32_t>()};
+    }
+    std::string text() {
+        static const Words kParts{"a", "Z",    "0",    " ",   "#",      "\"",     "'",         "\\",
+                                  "=", ",",    "[",    "]",   "\n",     "\r",     "\t",        "%",
+                                  "/", "\x7f", "\x01", "\\u", "\u00fc", "\u2603", "\U0001F600"};
+        std::string text(1, 'x');
+        for (std::uint32_t i = below(12); i > 0; --i) {
+            text += kParts[below(static_cast<std::uint32_t>(kParts.size()))];
+        }
+        return text;
+    }
+
+    std::mt19937 random_;
+};
+
+TEST(Config, WhatIsWrittenIsReadAgainExactly) {
+    const TemporaryFolder folder;
+    RandomOptions random(1);
+    for (int i = 0; i < 500; ++i) {
+        const Options options = random.make();
+        write_config(folder / "a.toml", options);
+        const auto read = parse({"--config", folder / "a.toml"});
+        ASSERT_TRUE(read.has_value());
+        ASSERT_TRUE(*read == options) << text_of(folder / "a.toml");
+        // The sign of a zero is not in ==, but in the text.
+        write_config(folder / "b.toml", *read);
+        ASSERT_EQ(text_of(folder / "b.toml"), text_of(folder / "a.toml"));
+    }
+}
+
+TEST(Config, OptionsThatNobodyGaveRemainSo) {
+    const TemporaryFolder folder;
+    Options options;
+    options.scene = "scene.cw2mesh";
+    write_config(folder / "a.toml", options);
+    EXPECT_TRUE(*parse({"--config", folder / "a.toml"}) == options);
+    EXPECT_TRUE(*parse({"scene.cw2mesh"}) == options);
+}
+
+TEST(Config, TheCommandLineWins) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "a.toml")
+        << "scene = 'a.cw2mesh'\nfov = 50\nview = 'normal'\nno-alpha-mask = true\n";
+    const auto options =
+        parse({"b.cw2mesh", "--config", folder / "a.toml", "--fov", "70", "--no-normal-map"});
+    EXPECT_EQ(options->scene, "b.cw2mesh");
+    EXPECT_EQ(options->vertical_fov, 70.0f);
+    EXPECT_EQ(options->view, interop::kViewNormal);
+    EXPECT_FALSE(options->normal_map);
+    EXPECT_FALSE(options->alpha_mask);
+}
+
+TEST(Config, ReadsWhatPeopleWriteInToml) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "a.toml", std::ios::binary)
+        << "# a comment\r\n\r\n  scene='C:\\new #1.cw2mesh' # with a hash\r\n"
+           "camera-position = [ 1.5, # x\n  -2e-1,\n\t3, ]\n"
+           "light-position = \"4,5,6\"\n"
+           "device=\"\\u00fc \\\"q\\\" \\U0001F600\"\n"
+           "no-normal-map = false\nno-alpha-mask   =   true";
+    const auto options = parse({"--config", folder / "a.toml"});
+    EXPECT_EQ(options->scene, "C:\\new #1.cw2mesh");
+    EXPECT_EQ(options->camera_position, glm::vec3(1.5f, -0.2f, 3.0f));
+    EXPECT_EQ(options->light_position, glm::vec3(4.0f, 5.0f, 6.0f));
+    EXPECT_EQ(options->device, "\u00fc \"q\" \U0001F600");
+    EXPECT_TRUE(options->normal_map);
+    EXPECT_FALSE(options->alpha_mask);
+}
+
+TEST(Config, WhatMakesNoSenseIsToldWithItsPlace) {
+    const struct {
+        std::string text;
+        Words parts;
+    } table[] = {
+        {"fovv = 60\n", {":1: ", "'fovv'"}},
+        {"\n\nconfig = 'b.toml'\n", {":3: ", "'config'"}},
+        {"fov = 60\nfov = 60\n", {":2: ", "'fov'"}},
+        {"fov = 0\n", {":1: fov: ", "'0'"}},
+        {"fov = wide\n", {":1: fov: "}},
+        {"fov = 1_0\n", {":1: fov: ", "'1_0'"}},
+        {"fov = nan\n", {":1: fov: "}},
+        {"fov = 'nan'\n", {":1: fov: ", "'nan'"}},
+        {"fov =\n", {":1: fov: "}},
+        {"fov\n", {":1: ", "'fov'", "'='"}},
+        {"fov = 60 70\n", {":1: "}},
+        {"= 60\n", {":1: ", "key"}},
+        {"view = 'sideways'\n", {":1: view: ", "'sideways'", "--list-views"}},
+        {"no-normal-map = 1\n", {":1: no-normal-map: ", "'1'"}},
+        {"ambient = [1, 2]\n", {":1: ambient: ", "'1,2'"}},
+        {"ambient = [1, 2, 3\nfov = 60\n", {"ambient: "}},
+        {"ambient = [1e39, 0, 0]\n", {":1: ambient: "}},
+        {"size = '640'\n", {":1: size: ", "'640'"}},
+        {"device = \"abc\nfov = 60\n", {":1: device: "}},
+        {"device = 'abc\n", {":1: device: "}},
+        {"device = \"\\q\"\n", {":1: device: ", "\\q"}},
+        {"device = \"\\uD800\"\n", {":1: device: ", "U+D800"}},
+        {"[camera]\nfov = 60\n", {":1: ", "table"}},
+    };
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.toml";
+    for (const auto& [text, parts] : table) {
+        SCOPED_TRACE(text);
+        std::ofstream(path) << text;
+        try {
+            // A value that the command line overrides must make sense, too.
+            parse({"a.cw2mesh", "--config", path, "--fov", "50"});
+            ADD_FAILURE() << "accepted";
+        } catch (const UsageError& error) {
+            const std::string line = error.what();
+            EXPECT_TRUE(line.starts_with(path + ":")) << line;
+            EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+            for (const std::string& part : parts) {
+                EXPECT_NE(line.find(part), std::string::npos) << line << " does not hold " << part;
+            }
+        }
+    }
+}
+
+TEST(Config, FilesThatCannotBeReadOrWrittenAreNoUsageErrors) {
+    const TemporaryFolder folder;
+    EXPECT_THROW(parse({"a.cw2mesh", "--config", folder / "gone.toml"}), mesh_format::FileError);
+    EXPECT_THROW(parse({"a.cw2mesh", "--config", folder.path()}), mesh_format::FileError);
+    EXPECT_THROW(write_config(folder / "no/a.toml", {}), mesh_format::FileError);
+}
+
+}  // namespace
