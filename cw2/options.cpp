@@ -168,6 +168,13 @@ std::vector<Setting> all_settings() {
         value("ambient", "R,G,B", "ambient light, linear [0.02,0.02,0.02]", &O::ambient),
         value("background", "R,G,B", "linear [0.1,0.1,0.1]", &O::background),
         value("time", "SECONDS", "instant of the light's orbit, 1 rad/s about z [0]", &O::time),
+        value("roughness", "0..1", "roughness of every material [its own]", &O::roughness,
+              between(0.0f, 1.0f)),
+        value("metalness", "0..1", "metalness of every material [its own]", &O::metalness,
+              between(0.0f, 1.0f)),
+        value<float>("normal-strength", "0..10", "factor on the slopes of all normal maps [1]",
+                     &O::normal_strength,
+                     [](const float& factor) { return factor >= 0.0f && factor <= 10.0f; }),
         flag("no-normal-map", "shade with the vertex normals", &O::normal_map, false),
         flag("no-alpha-mask", "draw what alpha masks cut away", &O::alpha_mask, false),
         value<std::optional<std::uint32_t>>(
@@ -285,6 +292,7 @@ FrameSettings frame_settings(const Options& options, const Bounds& bounds, float
     }
     settings.light = {options.light_position.value_or(default_light_position(bounds)),
                       options.light_color, options.ambient};
+    settings.materials = {options.roughness, options.metalness, options.normal_strength};
     settings.background = options.background;
     return settings;
 }

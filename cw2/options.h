@@ -36,6 +36,9 @@ struct Options {
     glm::vec3 ambient{0.02f};
     glm::vec3 background{0.1f};
     double time = 0.0;  ///< seconds of the light's orbit
+    std::optional<float> roughness;  ///< of every material, in [0, 1]; none: its own
+    std::optional<float> metalness;  ///< the same
+    float normal_strength = 1.0f;    ///< a factor on the slopes of all normal maps, in [0, 10]
     bool normal_map = true;
     bool alpha_mask = true;
     std::optional<std::uint32_t> anisotropy;  ///< 1 to 16; none: 16 on GPUs, 1 on CPUs

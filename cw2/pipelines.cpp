@@ -97,14 +97,16 @@ VertexInput vertex_input(const VertexForms& forms) {
 }
 
 /// The values of all specialisation constants, indexed by their id.
-std::array<std::uint32_t, 6> constants_of(const PipelineKey& key) {
-    std::array<std::uint32_t, 6> values{};
+std::array<std::uint32_t, interop::kSpecializationCount> constants_of(const PipelineKey& key) {
+    std::array<std::uint32_t, interop::kSpecializationCount> values{};
     values[interop::kPositionFormConstant] = static_cast<std::uint32_t>(key.forms.position);
     values[interop::kFrameFormConstant] = static_cast<std::uint32_t>(key.forms.frame);
     values[interop::kUvFormConstant] = static_cast<std::uint32_t>(key.forms.uv);
     values[interop::kViewConstant] = key.view;
     values[interop::kNormalMapConstant] = key.normal_map ? 1 : 0;
     values[interop::kAlphaMaskConstant] = key.alpha_mask ? 1 : 0;
+    values[interop::kRoughnessMapConstant] = key.roughness_map ? 1 : 0;
+    values[interop::kMetalnessMapConstant] = key.metalness_map ? 1 : 0;
     return values;
 }
 

@@ -49,8 +49,10 @@ struct PipelineKey {
     Shading shading;
     VertexForms forms;
     View view;
-    bool normal_map;  ///< false: the vertex normal shades
-    bool alpha_mask;  ///< false: nothing is discarded
+    bool normal_map;     ///< false: the vertex normal shades
+    bool alpha_mask;     ///< false: nothing is discarded
+    bool roughness_map;  ///< false: the factor alone counts
+    bool metalness_map;  ///< the same
     auto operator<=>(const PipelineKey&) const = default;
 };
 

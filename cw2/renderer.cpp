@@ -63,6 +63,24 @@ interop::SceneUniforms scene_uniforms(const Scene& scene, VkExtent2D extent,
     return uniforms;
 }
 
+PipelineKey pipeline_key(const Draw& draw, const FrameSettings& settings) {
+    return {.shading = draw.shading,
+            .forms = draw.forms,
+            .view = settings.view,
+            .normal_map = settings.normal_map,
+            .alpha_mask = settings.alpha_mask,
+            .roughness_map = !settings.materials.roughness,
+            .metalness_map = !settings.materials.metalness};
+}
+
+interop::DrawConstants draw_constants(const Draw& draw, const MaterialOverrides& materials) {
+    interop::DrawConstants constants = draw.constants;
+    constants.roughness = materials.roughness.value_or(constants.roughness);
+    constants.metalness = materials.metalness.value_or(constants.metalness);
+    constants.normal_scale *= materials.normal_strength;
+    return constants;
+}
+
 }  // namespace
 
 Renderer::Renderer(const Device& device, const Layouts& layouts, const ShaderCode& code,
@@ -177,8 +195,7 @@ void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set,
         const SceneChunk& chunk = scene.chunks()[index];
         const Draw& draw = scene.draws()[chunk.draw];
         if (&draw != bound_draw) {
-            const VkPipeline pipeline = pipelines_.get({draw.shading, draw.forms, settings.view,
-                                                        settings.normal_map, settings.alpha_mask});
+            const VkPipeline pipeline = pipelines_.get(pipeline_key(draw, settings));
             const VkPipelineLayout layout = layouts_.pipeline(draw.shading);
             if (pipeline != bound_pipeline) {
                 vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
@@ -194,9 +211,10 @@ void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set,
                                         interop::kMaterialSet, 1, &draw.material, 0, nullptr);
                 bound_material = draw.material;
             }
+            const interop::DrawConstants constants = draw_constants(draw, settings.materials);
             vkCmdPushConstants(commands, layout,
                                VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                               sizeof draw.constants, &draw.constants);
+                               sizeof constants, &constants);
             vkCmdSetCullMode(commands, draw.cull_back ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE);
             const VkBuffer vertices = scene.vertices();
             vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &draw.vertex_offset);

@@ -26,6 +26,13 @@ struct FrameTarget {
     ImageUse after;  ///< what it is used for next
 };
 
+/// What every material has instead of its own.
+struct MaterialOverrides {
+    std::optional<float> roughness;  ///< in [0, 1], in place of factor and texture
+    std::optional<float> metalness;  ///< the same
+    float normal_strength = 1.0f;    ///< a factor on the slopes of all normal maps
+};
+
 /// What a frame shows.
 struct FrameSettings {
     View view = interop::kViewShaded;
@@ -33,6 +40,7 @@ struct FrameSettings {
     bool alpha_mask = true;
     Camera camera{};
     Light light{};
+    MaterialOverrides materials{};
     glm::vec3 background{0.1f};  ///< linear
 };
 

@@ -134,6 +134,7 @@ interop::DrawConstants constants_of(const Document& document, const MeshRecord& 
     constants.metalness = material.metalness;
     constants.alpha_cutoff = material.alpha_cutoff;
     constants.normal_map = normal_map_of(document, material);
+    constants.normal_scale = 1.0f;
     return constants;
 }
 

@@ -53,7 +53,8 @@ struct DrawConstants {
     float roughness;
     float metalness;
     float alpha_cutoff;
-    uint normal_map;  // kNormalMapAbsent...
+    uint normal_map;     // kNormalMapAbsent...
+    float normal_scale;  // of the normal map's x and y
 };
 
 CW2_CONSTANT uint kNormalMapAbsent = 0;
@@ -72,6 +73,9 @@ CW2_CONSTANT uint kUvFormConstant = 2;
 CW2_CONSTANT uint kViewConstant = 3;
 CW2_CONSTANT uint kNormalMapConstant = 4;  // 0: the vertex normal shades
 CW2_CONSTANT uint kAlphaMaskConstant = 5;  // 0: nothing is discarded
+CW2_CONSTANT uint kRoughnessMapConstant = 6;  // 0: the factor alone counts
+CW2_CONSTANT uint kMetalnessMapConstant = 7;  // the same
+CW2_CONSTANT uint kSpecializationCount = 8;
 
 // What a fragment shows; cw2/view.h names them.
 CW2_CONSTANT uint kViewShaded = 0;
@@ -96,7 +100,7 @@ CW2_CONSTANT uint kViewCount = 17;
 #ifdef __cplusplus
 static_assert(offsetof(SceneUniforms, cameraPosition) == 192);
 static_assert(offsetof(SceneUniforms, ambientColor) == 240 && sizeof(SceneUniforms) == 256);
-static_assert(offsetof(DrawConstants, base_color) == 32 && sizeof(DrawConstants) == 60);
+static_assert(offsetof(DrawConstants, base_color) == 32 && sizeof(DrawConstants) == 64);
 }  // namespace cw2::interop
 #endif
 

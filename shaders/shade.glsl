@@ -4,6 +4,8 @@
 
 layout(constant_id = kViewConstant) const uint view = kViewShaded;
 layout(constant_id = kNormalMapConstant) const uint use_normal_map = 1;
+layout(constant_id = kRoughnessMapConstant) const uint use_roughness_map = 1;
+layout(constant_id = kMetalnessMapConstant) const uint use_metalness_map = 1;
 
 layout(set = kSceneSet, binding = kSceneBinding, std140) uniform Scene { SceneUniforms scene; };
 layout(push_constant) uniform Draw { DrawConstants draw; };
@@ -29,6 +31,7 @@ vec3 shading_normal() {
     }
     vec3 t = texture(normal_map, uv).xyz * 2.0 - 1.0;
     if (draw.normal_map == kNormalMapXy) t.z = sqrt(max(1.0 - dot(t.xy, t.xy), 0.0));
+    t.xy *= draw.normal_scale;
     const vec3 bitangent = handedness * cross(world_normal, world_tangent);
     return normalize(t.x * world_tangent + t.y * bitangent + t.z * world_normal);
 }
@@ -36,8 +39,10 @@ vec3 shading_normal() {
 Surface surface_at_fragment() {
     Surface surface;
     surface.base_color = draw.base_color * texture(base_color_map, uv).rgb;
-    surface.alpha = draw.roughness * texture(roughness_map, uv).r;
-    surface.metalness = draw.metalness * texture(metalness_map, uv).r;
+    surface.alpha = draw.roughness;
+    if (use_roughness_map != 0) surface.alpha *= texture(roughness_map, uv).r;
+    surface.metalness = draw.metalness;
+    if (use_metalness_map != 0) surface.metalness *= texture(metalness_map, uv).r;
     surface.normal = shading_normal();
     return surface;
 }

@@ -167,15 +167,17 @@ TEST_F(Pictures, AFlatWallShowsItsExactNormal) {
     });
 }
 
-/// The plate's left half is the right half's mirror image, and so are its bumps.
-void expect_bumps(const Picture& picture, double tolerance) {
+/// The plate's left half is the right half's mirror image, and so are its bumps, whose slopes are
+/// multiplied by `strength`.
+void expect_bumps(const Picture& picture, double tolerance, double strength = 1.0) {
     double largest = 0.0;
     for_each_point(picture, 1.9, 0.95, [&](dvec2 point, const float* sample) {
         if (std::abs(point.x) < 0.03) return;
         const double side = point.x > 0.0 ? 1.0 : -1.0;
         const auto normal = bump_normal(std::abs(point.x) / 2.0, (point.y + 1.0) / 2.0);
         const dvec3 shown(2.0 * sample[0] - 1.0, 2.0 * sample[1] - 1.0, 2.0 * sample[2] - 1.0);
-        const dvec3 truth(side * normal[0], normal[1], normal[2]);
+        const dvec3 truth =
+            glm::normalize(dvec3(side * strength * normal[0], strength * normal[1], normal[2]));
         largest = std::max(largest, glm::length(shown - truth));
     });
     fmt::print("largest error of a normal: {:.4f}\n", largest);
@@ -185,6 +187,41 @@ void expect_bumps(const Picture& picture, double tolerance) {
 TEST_F(Pictures, NormalMapsShowTheNormalsOfTheirHeightField) {
     // An 8-bit normal is off by up to sqrt(3) / 255, and filtering cuts curvature.
     expect_bumps(draw_frontal("plate", ".exr", "normal"), 0.03);
+}
+
+TEST_F(Pictures, NormalStrengthMultipliesTheSlopes) {
+    for (const std::string strength : {"0.5", "2"}) {
+        const double factor = std::stod(strength);
+        expect_bumps(draw_frontal("plate", ".exr", "normal", {"--normal-strength", strength}),
+                     0.03 * std::max(1.0, factor), factor);
+    }
+    const Options seen{"--size", "160x90", "--samples", "1"};
+    Options flat = seen, without = seen;
+    flat.insert(flat.end(), {"--normal-strength", "0"});
+    without.push_back("--no-normal-map");
+    EXPECT_LE(largest_difference(draw("stage", ".exr", flat), draw("stage", ".exr", without)),
+              1e-5);
+}
+
+TEST_F(Pictures, RoughnessAndMetalnessCanBeOneForEveryMaterial) {
+    for (const std::string view : {"roughness", "metalness"}) {
+        const Options size{"--size", "160x90", "--samples", "1", "--view", view};
+        Options overridden = size;
+        overridden.insert(overridden.end(), {"--" + view, "0.375"});
+        const Picture own = draw("stage", ".exr", size);
+        const Picture one = draw("stage", ".exr", overridden);
+        int geometry = 0, changed = 0;
+        for (int y = 0; y < one.height; ++y) {
+            for (int x = 0; x < one.width; ++x) {
+                if (one.at(x, y)[3] == 0.0f) continue;
+                ASSERT_EQ(one.at(x, y)[0], 0.375f) << view;
+                ++geometry;
+                changed += own.at(x, y)[0] != 0.375f;
+            }
+        }
+        EXPECT_GT(geometry, 1000) << view;
+        EXPECT_GT(changed, 1000) << view;
+    }
 }
 
 TEST_F(Pictures, HeightMapsShowTheNormalsOfTheirHeightField) {

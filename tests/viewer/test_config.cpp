@@ -50,6 +50,9 @@ class RandomOptions {
         options.ambient = vector();
         options.background = vector();
         options.time = number<double, std::uint64_t>();
+        maybe([&] { options.roughness = std::uniform_real_distribution(0.0f, 1.0f)(random_); });
+        maybe([&] { options.metalness = std::uniform_real_distribution(0.0f, 1.0f)(random_); });
+        options.normal_strength = std::uniform_real_distribution(0.0f, 10.0f)(random_);
         options.normal_map = below(2) == 0;
         options.alpha_mask = below(2) == 0;
         maybe([&] { options.anisotropy = 1 + below(16); });
