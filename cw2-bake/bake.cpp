@@ -33,10 +33,10 @@ using mesh_format::TextureRecord;
 
 /// Welds the scene's triangles, gives them their frames, and cuts them into chunks; the meshes come
 /// in the order of their materials. Each step frees what the one before it made, since that is what
-/// the peak memory of a bake consists of; of the scene only the materials are left.
+/// the peak memory of a bake consists of; of the scene its geometry is gone.
 std::vector<ChunkedMesh> make_meshes(SourceScene& scene, std::span<const UvBudget> budgets) {
     std::vector<WeldedMesh> welded = weld(scene);
-    scene = {.materials = std::move(scene.materials)};
+    scene = {.materials = std::move(scene.materials), .camera = scene.camera, .light = scene.light};
     std::vector<std::vector<ChunkedMesh>> pieces(welded.size());
     tbb::parallel_for(std::size_t{0}, welded.size(), [&](std::size_t i) {
         const FramedMesh framed = add_tangents(std::exchange(welded[i], {}));
@@ -100,8 +100,10 @@ MaterialRecord material_record(const SourceMaterial& source, const MaterialTextu
     record.roughness = textures.roughness_holds_factor ? 1.0f : source.roughness;
     record.metalness = source.metalness;
     record.alpha_cutoff = source.alpha_cutoff;
+    record.normal_scale = source.normal_scale;
     if (textures.alpha_mask != kNoTexture) record.flags |= mesh_format::kAlphaMask;
     if (source.cull_back) record.flags |= mesh_format::kCullBack;
+    if (source.flip_back_normals) record.flags |= mesh_format::kFlipBackNormals;
     record.base_color_texture = textures.base_color;
     record.roughness_texture = textures.roughness;
     record.metalness_texture = textures.metalness;
@@ -136,6 +138,24 @@ Tables make_tables(const std::vector<SourceMaterial>& materials, const TextureSe
     return tables;
 }
 
+/// Where the source wants to be seen from, and lit from.
+void add_start(const SourceScene& source, mesh_format::SceneRecord& record) {
+    const auto store = [](const glm::vec3& from, float(&to)[3]) {
+        for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
+    };
+    if (source.camera) {
+        record.flags |= mesh_format::kHasCamera;
+        store(source.camera->position, record.camera_position);
+        store(source.camera->target, record.camera_target);
+        record.camera_fov = source.camera->vertical_fov;
+    }
+    if (source.light) {
+        record.flags |= mesh_format::kHasLight;
+        store(source.light->position, record.light_position);
+        store(source.light->color, record.light_color);
+    }
+}
+
 void write_stats(const Settings& settings, const BakeStats& stats) {
     const std::string json = to_json(stats, std::filesystem::file_size(settings.input));
     mesh_format::OutputFile file(*settings.stats);
@@ -162,8 +182,9 @@ std::string bake(const Settings& settings, const Warn& warn) {
     const std::vector<UvBudget> budgets = uv_budgets(textures);
     const std::vector<ChunkedMesh> meshes = make_meshes(scene, budgets);
     clock.end("weld, tangents, chunks");
-    const PackedGeometry geometry =
+    PackedGeometry geometry =
         quantise(meshes, budgets, {settings.frame_form, settings.position_form});
+    add_start(scene, geometry.scene);
     const Tables tables = make_tables(scene.materials, textures);
     clock.end("pack");
 

@@ -1,5 +1,7 @@
 #include "cw2-bake/framed_mesh.h"
 
+#include <algorithm>
+
 #include "cw2-bake/tangents.h"
 
 namespace bake {
@@ -8,11 +10,23 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 
+/// One a corner: the source's, and those of MikkTSpace where it gives none.
+std::vector<glm::vec4> tangents_of(const WeldedMesh& mesh) {
+    const auto is_given = [](const glm::vec4& tangent) { return tangent.w != 0.0f; };
+    const bool complete = !mesh.tangents.empty() && std::ranges::all_of(mesh.tangents, is_given);
+    if (complete) return mesh.tangents;
+    std::vector<glm::vec4> tangents =
+        generate_tangents(mesh.positions, mesh.normals, mesh.uvs, mesh.indices);
+    for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
+        if (is_given(mesh.tangents[i])) tangents[i] = mesh.tangents[i];
+    }
+    return tangents;
+}
+
 }  // namespace
 
 FramedMesh add_tangents(WeldedMesh mesh) {
-    const std::vector<glm::vec4> corner_tangents =
-        generate_tangents(mesh.positions, mesh.normals, mesh.uvs, mesh.indices);
+    const std::vector<glm::vec4> corner_tangents = tangents_of(mesh);
 
     FramedMesh framed;
     framed.material = mesh.material;

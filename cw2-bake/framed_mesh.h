@@ -20,8 +20,9 @@ struct FramedMesh {
     std::vector<std::uint32_t> indices;
 };
 
-/// Gives `mesh` its tangents, which follow OBJ's v (up), and turns v down: vertices whose corners
-/// differ in them are split. Vertices come in the order of their first use.
+/// Gives `mesh` its tangents (those it has, else MikkTSpace's), which follow OBJ's v (up), and
+/// turns v down: vertices whose corners differ in them are split. Vertices come in the order of
+/// their first use.
 FramedMesh add_tangents(WeldedMesh mesh);
 
 }  // namespace bake

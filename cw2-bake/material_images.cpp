@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <glm/geometric.hpp>
 #include <span>
 
 #include "cw2-bake/block_compression.h"
@@ -24,7 +25,7 @@ const Image* load(const std::optional<TextureMap>& map, ImageCache& images, Imag
         return nullptr;
     }
     try {
-        return &images.get(map->file);
+        return &images.get(*map);
     } catch (const ImageError& error) {
         warn(*map, error.what(), result);
         return nullptr;
@@ -80,7 +81,7 @@ std::optional<Mask> find_mask(const ImageRequest& request, const Image* color, c
         if (choose && mask->range.smallest >= 1.0f) {
             mask = mask_of(*alpha, Channel::r, *request.alpha_map);
         }
-    } else if (color && color->has_alpha) {
+    } else if (color && color->has_alpha && request.color_alpha_is_mask) {
         mask = mask_of(*color, Channel::alpha, *request.map);
     }
     const bool hides = mask && mask->range.smallest < shown_from(request.alpha_cutoff);
@@ -170,6 +171,21 @@ TexelSource enlarged(const TexelSource& source, std::uint32_t width, std::uint32
             }};
 }
 
+/// The normals as a material with this scale shades with them.
+TexelSource scaled_normals(const TexelSource& source, float scale) {
+    if (scale == 1.0f) return source;
+    return {source.width, source.height, 3,
+            [source, scale](std::uint32_t y, std::span<float> texels) {
+                source.read_row(y, texels);
+                for (std::size_t i = 0; i < texels.size(); i += 3) {
+                    const glm::vec3 n(scale * texels[i], scale * texels[i + 1], texels[i + 2]);
+                    const float length = glm::length(n);
+                    if (!(length > 0.0f)) continue;
+                    for (int axis = 0; axis < 3; ++axis) texels[i + axis] = n[axis] / length;
+                }
+            }};
+}
+
 void make_roughness(const ImageRequest& request, ImageCache& images, ImageResult& result) {
     const auto normals =
         find_normals(request.relief, request.relief_is_bump, request.bump_scale, images, result);
@@ -180,7 +196,7 @@ void make_roughness(const ImageRequest& request, ImageCache& images, ImageResult
         const TexelSource own = image ? scalar_texels(*image, request.map->channel) : constant;
         const TexelSource alphas = enlarged(own, std::max(own.width, normals->width),
                                             std::max(own.height, normals->height));
-        MeanLengths lengths = mean_lengths(*normals);
+        MeanLengths lengths = mean_lengths(scaled_normals(*normals, request.normal_scale));
         RoughnessChain chain = filter_roughness(alphas, request.factor, lengths);
         if (chain.widened) {
             const TextureMap& map = image ? *request.map : *request.relief;
@@ -199,15 +215,16 @@ void make_roughness(const ImageRequest& request, ImageCache& images, ImageResult
 
 }  // namespace
 
-const std::filesystem::path& first_file(const ImageRequest& request) {
+const TextureMap& first_map(const ImageRequest& request) {
     // That of the relief, so that a batch decodes it once.
-    return (request.relief ? request.relief : request.map ? request.map : request.alpha_map)->file;
+    return *(request.relief ? request.relief : request.map ? request.map : request.alpha_map);
 }
 
-const Image& ImageCache::get(const std::filesystem::path& file) {
-    const auto known = images_.find(file);
-    return known != images_.end() ? known->second
-                                  : images_.emplace(file, read_image(file)).first->second;
+const Image& ImageCache::get(const TextureMap& map) {
+    const auto known = images_.find(map.file);
+    if (known != images_.end()) return known->second;
+    Image image = map.embedded ? read_image(*map.embedded) : read_image(map.file);
+    return images_.emplace(map.file, std::move(image)).first->second;
 }
 
 ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCache& images) {

@@ -26,14 +26,16 @@ struct ImageRequest {
     std::optional<TextureMap> map{};        ///< of a surface: the base colour
     std::optional<TextureMap> alpha_map{};  ///< of a surface; it or `map` is there
     float alpha_cutoff = 0.0f;              ///< of a surface
+    bool color_alpha_is_mask = true;        ///< of a surface, where there is no alpha_map
     float bump_scale = 0.0f;                ///< of a bump, also as a relief
     std::optional<TextureMap> relief{};     ///< of roughness
     bool relief_is_bump = false;
-    float factor = 1.0f;  ///< of roughness, what its map is multiplied with
+    float normal_scale = 1.0f;  ///< of a relief that is no bump
+    float factor = 1.0f;        ///< of roughness, what its map is multiplied with
 };
 
-/// The image that is read for a request whatever it holds.
-const std::filesystem::path& first_file(const ImageRequest& request);
+/// The map whose image is read for a request whatever it holds.
+const TextureMap& first_map(const ImageRequest& request);
 
 /// An image that cannot be used, and the line that says so.
 struct ImageWarning {
@@ -52,7 +54,7 @@ struct ImageResult {
 class ImageCache {
  public:
     /// The image, read when first asked for. Throws ImageError.
-    const Image& get(const std::filesystem::path& file);
+    const Image& get(const TextureMap& map);
 
  private:
     std::map<std::filesystem::path, Image> images_;

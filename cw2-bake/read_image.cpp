@@ -1,6 +1,7 @@
 #include "cw2-bake/read_image.h"
 
 #include <dlfcn.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -57,10 +58,7 @@ std::string one_line(std::string text) {
     return text.empty() ? "cannot be read" : text;
 }
 
-}  // namespace
-
-Image read_image(const std::filesystem::path& path) {
-    check_regular_file(path);
+Image read_regular_file(const std::filesystem::path& path) {
     static ImageReader* const reader = load_image_reader();
     Image image;
     std::string error;
@@ -68,6 +66,45 @@ Image read_image(const std::filesystem::path& path) {
         throw ImageError(one_line(std::move(error)));
     }
     return image;
+}
+
+/// A file in memory that lives as long as this.
+class MemoryFile {
+ public:
+    explicit MemoryFile(std::span<const std::byte> contents)
+        : descriptor_(memfd_create("image", MFD_CLOEXEC)) {
+        while (descriptor_ >= 0 && !contents.empty()) {
+            const ssize_t written = ::write(descriptor_, contents.data(), contents.size());
+            if (written <= 0) break;
+            contents = contents.subspan(static_cast<std::size_t>(written));
+        }
+        if (descriptor_ < 0 || !contents.empty()) {
+            const std::string cause = std::strerror(errno);
+            close(descriptor_);
+            throw ImageError(cause);
+        }
+    }
+    ~MemoryFile() { close(descriptor_); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+
+    std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+    int descriptor_;
+};
+
+}  // namespace
+
+Image read_image(const std::filesystem::path& path) {
+    check_regular_file(path);
+    return read_regular_file(path);
+}
+
+Image read_image(std::span<const std::byte> contents) {
+    if (contents.empty()) throw ImageError("is empty");
+    // Not every decoder of OpenImageIO reads from memory; all read files.
+    return read_regular_file(MemoryFile(contents).path());
 }
 
 }  // namespace bake

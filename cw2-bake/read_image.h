@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,6 +37,9 @@ class ImageError : public std::runtime_error {
 /// misleads. Throws ImageError if there is none, or if it is damaged or larger than
 /// mesh_format::kMaxTextureSize. Callable from several threads.
 Image read_image(const std::filesystem::path& path);
+
+/// The same for the contents of an image file.
+Image read_image(std::span<const std::byte> contents);
 
 /// What the module image_reader exports: sets `image` and returns true, or sets `error`.
 using ImageReader = bool(const char* path, Image& image, std::string& error);

@@ -77,8 +77,10 @@ void prepare_missing_normals(const std::vector<ObjSmoothingUse>& uses, SourceSce
 /// The MTL files of an OBJ, and what of them its materials name.
 class Libraries {
  public:
-    Libraries(const std::filesystem::path& obj, std::string_view text, const Warn& warn)
-        : obj_(obj), text_(text), warn_(warn) {}
+    /// Adds the files that it reads to `files`.
+    Libraries(const std::filesystem::path& obj, std::string_view text, const Warn& warn,
+              std::vector<std::filesystem::path>& files)
+        : obj_(obj), text_(text), warn_(warn), files_(files) {}
 
     void read(const std::vector<ObjStatement>& statements, std::vector<SourceMaterial>& materials);
     void warn_of_unknown(const std::vector<SourceMaterial>& materials,
@@ -96,6 +98,7 @@ class Libraries {
     const std::filesystem::path& obj_;
     std::string_view text_;
     const Warn& warn_;
+    std::vector<std::filesystem::path>& files_;
     std::unordered_map<std::string_view, std::size_t> unknown_;  // by name, index of material
     bool some_missing_ = false;
 };
@@ -129,6 +132,7 @@ void Libraries::read_library(const std::string& name, const std::string& stated_
         return;
     }
     const auto wanted = [&](std::string_view material) { return unknown_.contains(material); };
+    files_.push_back(path);
     try {
         for (SourceMaterial& material : read_mtl(path, wanted, warn_)) {
             const auto entry = unknown_.find(material.name);
@@ -200,7 +204,8 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
     triangulate_polygons(contents.polygons, scene);
     if (contents.lacks_normals) prepare_missing_normals(contents.smoothing_uses, scene);
 
-    Libraries libraries(path, text, warn);
+    scene.files.push_back(path);
+    Libraries libraries(path, text, warn, scene.files);
     libraries.read(contents.libraries, scene.materials);
     libraries.warn_of_unknown(scene.materials, contents.material_offsets);
     for (SourceMaterial& material : scene.materials) {

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,8 +36,12 @@ enum class Channel : std::uint8_t {
 
 /// A reference to an image, as a material states it.
 struct TextureMap {
-    std::filesystem::path file;  ///< resolved against the file that names it; may not exist
-    std::string stated_in;       ///< "PATH:LINE" of the statement, for messages
+    /// Resolved against the file that names it; may not exist. Of an embedded image a name that no
+    /// other image of the scene has.
+    std::filesystem::path file;
+    /// The contents of an image file, where the source embeds it.
+    std::shared_ptr<const std::vector<std::byte>> embedded{};
+    std::string stated_in;  ///< "PATH:LINE" of the statement, for messages
     Channel channel = Channel::standard;
     bool clamp = false;
 };
@@ -53,13 +59,27 @@ struct SourceMaterial {
     float roughness = 1.0f;  ///< [0, 1], the alpha of the Blinn-Phong distribution
     float metalness = 0.0f;  ///< [0, 1]
     float alpha_cutoff = 0.5f;
+    float normal_scale = 1.0f;  ///< multiplies x and y of the vectors in normal_map
     bool cull_back = false;
+    bool flip_back_normals = false;            ///< a back face is lit from behind
+    bool base_color_alpha_is_mask = true;      ///< where there is no alpha_map
     std::optional<TextureMap> base_color_map;  ///< sRGB
     std::optional<TextureMap> roughness_map;
     std::optional<TextureMap> metalness_map;
     std::optional<TextureMap> normal_map;  ///< tangent space, green up along +v
     std::optional<BumpMap> bump_map;       ///< used where there is no normal_map
     std::optional<TextureMap> alpha_map;   ///< else the alpha of base_color_map may mask
+};
+
+/// What a viewer starts with, if the source says it.
+struct SourceCamera {
+    glm::vec3 position;
+    glm::vec3 target;    ///< another point
+    float vertical_fov;  ///< radians, in (0, pi)
+};
+struct SourceLight {
+    glm::vec3 position;
+    glm::vec3 color;  ///< linear; the light has no falloff
 };
 
 /// Triangles over shared attribute arrays. Right-handed, +Y up; v = 0 is the bottom row of an
@@ -73,7 +93,13 @@ struct SourceScene {
     std::vector<std::uint32_t> triangle_material;  ///< one a triangle, index into materials
     /// One a triangle, 0 = not smoothed; empty if every corner has a normal.
     std::vector<std::uint32_t> smoothing_group;
+    /// One a corner as tangents.h describes them, or zero where the source gives none; empty if it
+    /// gives none at all.
+    std::vector<glm::vec4> tangents;
     std::vector<SourceMaterial> materials;
+    std::optional<SourceCamera> camera;
+    std::optional<SourceLight> light;
+    std::vector<std::filesystem::path> files;  ///< that were read; images are not among them
 };
 
 }  // namespace bake

@@ -43,8 +43,9 @@ auto identity(const std::optional<TextureMap>& map) {
 }
 auto identity(const ImageRequest& request) {
     return std::tuple(request.kind, identity(request.map), identity(request.alpha_map),
-                      request.alpha_cutoff, request.bump_scale, identity(request.relief),
-                      request.relief_is_bump, request.factor);
+                      request.alpha_cutoff, request.color_alpha_is_mask, request.bump_scale,
+                      identity(request.relief), request.relief_is_bump, request.normal_scale,
+                      request.factor);
 }
 
 /// In blocks, the bumps of a normal map make the smaller levels of the roughness rougher.
@@ -58,6 +59,7 @@ ImageRequest roughness_request(const SourceMaterial& material, TextureMode mode)
     request.relief = material.normal_map ? material.normal_map : material.bump_map->map;
     request.relief_is_bump = !material.normal_map;
     if (request.relief_is_bump) request.bump_scale = material.bump_map->scale;
+    if (material.normal_map) request.normal_scale = material.normal_scale;
     request.factor = material.roughness;
     return request;
 }
@@ -80,7 +82,8 @@ Plan make_plan(std::span<const SourceMaterial> materials, TextureMode mode) {
         uses.surface = add({.kind = ImageRequest::Kind::surface,
                             .map = material.base_color_map,
                             .alpha_map = material.alpha_map,
-                            .alpha_cutoff = material.alpha_cutoff});
+                            .alpha_cutoff = material.alpha_cutoff,
+                            .color_alpha_is_mask = material.base_color_alpha_is_mask});
         uses.roughness = add(roughness_request(material, mode));
         uses.metalness = add({.kind = ImageRequest::Kind::scalar, .map = material.metalness_map});
         if (material.normal_map) {
@@ -102,18 +105,24 @@ struct Batch {
     std::vector<std::size_t> requests;
 };
 
+/// 1 where there is no such file.
+double encoded_bytes(const TextureMap& map) {
+    if (map.embedded) return static_cast<double>(map.embedded->size());
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(map.file, error);
+    return error ? 1.0 : static_cast<double>(bytes);
+}
+
 /// The largest first, so that no thread starts a large one when the others are done.
 std::vector<Batch> make_batches(const std::vector<ImageRequest>& requests) {
     std::map<std::filesystem::path, Batch> by_file;
     for (std::size_t i = 0; i < requests.size(); ++i) {
-        by_file[first_file(requests[i])].requests.push_back(i);
+        by_file[first_map(requests[i]).file].requests.push_back(i);
     }
     std::vector<Batch> batches;
     for (auto& [file, batch] : by_file) {
-        std::error_code error;
-        const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-        batches.push_back(
-            {file, error ? 1.0 : static_cast<double>(bytes), std::move(batch.requests)});
+        const double weight = encoded_bytes(first_map(requests[batch.requests.front()]));
+        batches.push_back({file, weight, std::move(batch.requests)});
     }
     std::ranges::stable_sort(batches, std::greater<>(), &Batch::weight);
     return batches;

@@ -59,6 +59,7 @@ std::vector<Vertex> index_corners(const SourceScene& scene, std::vector<WeldedMe
         if (found == vertices.size())
             vertices.push_back({corner, material, vertex_counts[material]++});
         meshes[material].indices.push_back(vertices[found].index);
+        if (!scene.tangents.empty()) meshes[material].tangents.push_back(scene.tangents[i]);
     }
     return vertices;
 }

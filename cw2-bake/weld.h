@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <vector>
 
 #include "cw2-bake/source_scene.h"
@@ -17,6 +18,9 @@ struct WeldedMesh {
     std::vector<glm::vec3> positions, normals;
     std::vector<glm::vec2> uvs;
     std::vector<std::uint32_t> indices;  ///< 3 a triangle, triangles in their source's order
+    /// Those that the source gives, one an index as in SourceScene::tangents; empty if it gives
+    /// none.
+    std::vector<glm::vec4> tangents;
 };
 
 /// One mesh a material that is used, in the order of the materials. Every corner of `scene` has a

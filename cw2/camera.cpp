@@ -15,6 +15,19 @@ Bounds bounds_of(const mesh_format::SceneRecord& scene) {
     return {0.5f * (low + high), std::max(scene.radius, 1e-6f)};
 }
 
+SceneStart start_of(const mesh_format::SceneRecord& scene) {
+    SceneStart start;
+    if (scene.flags & mesh_format::kHasCamera) {
+        start.camera = {glm::make_vec3(scene.camera_position), glm::make_vec3(scene.camera_target),
+                        scene.camera_fov};
+    }
+    if (scene.flags & mesh_format::kHasLight) {
+        start.light_position = glm::make_vec3(scene.light_position);
+        start.light_color = glm::make_vec3(scene.light_color);
+    }
+    return start;
+}
+
 Camera default_camera(const Bounds& bounds, float vertical_fov, float aspect) {
     const float half_vertical = 0.5f * vertical_fov;
     const float half_horizontal = std::atan(std::tan(half_vertical) * aspect);

@@ -3,6 +3,7 @@
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "mesh-format/layout.h"
 
@@ -24,6 +25,14 @@ struct Camera {
 
 /// The whole bounding sphere in view, seen from direction (1, 0.5, 1). `aspect` is width / height.
 Camera default_camera(const Bounds& bounds, float vertical_fov, float aspect);
+
+/// What a scene says about how it wants to be seen.
+struct SceneStart {
+    std::optional<Camera> camera;
+    std::optional<glm::vec3> light_position;
+    std::optional<glm::vec3> light_color;  ///< linear
+};
+SceneStart start_of(const mesh_format::SceneRecord& scene);
 
 glm::mat4 view_from_world(const Camera& camera);
 

@@ -118,7 +118,8 @@ void render_to_file(const Device& device, const Options& options) {
 
     const float aspect =
         static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
-    FrameSettings settings = frame_settings(options, scene.bounds(), aspect);
+    FrameSettings settings =
+        frame_settings(completed(options, scene.start()), scene.bounds(), aspect);
     settings.light.position = orbit(settings.light.position, scene.bounds().center, options.time);
 
     start = Clock::now();

@@ -80,7 +80,7 @@ class Session {
           window_(window),
           presenter_(presenter),
           scene_(scene),
-          state_(options, scene.bounds(), aspect_of(window.extent())),
+          state_(completed(options, scene.start()), scene.bounds(), aspect_of(window.extent())),
           title_(window, options.scene.filename().string()) {}
 
     void run() {

@@ -157,14 +157,17 @@ std::vector<Setting> all_settings() {
         value("output", "FILE.png|FILE.exr", "write one picture and end", &O::output),
         value("size", "WIDTHxHEIGHT", "pixels [1280x720]", &O::size),
         view_setting(),
-        value("camera-position", "X,Y,Z", "where the camera is [the whole scene in view]",
+        value("camera-position", "X,Y,Z",
+              "where the camera is [the file's, else the whole scene in view]",
               &O::camera_position),
-        value("camera-target", "X,Y,Z", "where it looks [the scene's centre]", &O::camera_target),
-        value<float>("fov", "DEGREES", "vertical field of view, 1 to 179 [60]", &O::vertical_fov,
-                     [](const float& fov) { return fov >= 1.0f && fov <= 179.0f; }),
-        value("light-position", "X,Y,Z", "where the light's orbit starts [above the scene]",
+        value("camera-target", "X,Y,Z", "where it looks [the file's, else the scene's centre]",
+              &O::camera_target),
+        value("fov", "DEGREES", "vertical field of view, 1 to 179 [the file's, else 60]",
+              &O::vertical_fov, between(1.0f, 179.0f)),
+        value("light-position", "X,Y,Z",
+              "where the light's orbit starts [the file's, else above the scene]",
               &O::light_position),
-        value("light-color", "R,G,B", "linear [1,1,1]", &O::light_color),
+        value("light-color", "R,G,B", "linear [the file's, else 1,1,1]", &O::light_color),
         value("ambient", "R,G,B", "ambient light, linear [0.02,0.02,0.02]", &O::ambient),
         value("background", "R,G,B", "linear [0.1,0.1,0.1]", &O::background),
         value("time", "SECONDS", "instant of the light's orbit, 1 rad/s about z [0]", &O::time),
@@ -219,7 +222,7 @@ void add_to(CLI::App& app, const Setting& setting, Options& options) {
 
 /// Takes over the file's settings that the command line does not have; it looks at all of them.
 void apply_config(const std::filesystem::path& path, const std::vector<Setting>& settings,
-                 const CLI::App& app, Options& options) {
+                  const CLI::App& app, Options& options) {
     for (const ConfigEntry& entry : read_config(path)) {
         const auto setting =
             std::find_if(settings.begin(), settings.end(),
@@ -278,20 +281,35 @@ void write_config(const std::filesystem::path& path, const Options& options) {
     file.commit();
 }
 
+Options completed(Options options, const SceneStart& start) {
+    constexpr float kDegreesPerRadian = 180.0f / 3.14159265f;
+    if (start.camera && !options.camera_position && !options.camera_target) {
+        options.camera_position = start.camera->position;
+        options.camera_target = start.camera->target;
+        if (!options.vertical_fov) {
+            options.vertical_fov = start.camera->vertical_fov * kDegreesPerRadian;
+        }
+    }
+    if (!options.light_position) options.light_position = start.light_position;
+    if (!options.light_color) options.light_color = start.light_color;
+    return options;
+}
+
 FrameSettings frame_settings(const Options& options, const Bounds& bounds, float aspect) {
     constexpr float kRadiansPerDegree = 3.14159265f / 180.0f;
     FrameSettings settings;
     settings.view = options.view;
     settings.normal_map = options.normal_map;
     settings.alpha_mask = options.alpha_mask;
-    settings.camera = default_camera(bounds, options.vertical_fov * kRadiansPerDegree, aspect);
+    const float fov = options.vertical_fov.value_or(60.0f) * kRadiansPerDegree;
+    settings.camera = default_camera(bounds, fov, aspect);
     settings.camera.position = options.camera_position.value_or(settings.camera.position);
     settings.camera.target = options.camera_target.value_or(settings.camera.target);
     if (settings.camera.position == settings.camera.target) {
         throw UsageError("the camera's position and target are the same point");
     }
     settings.light = {options.light_position.value_or(default_light_position(bounds)),
-                      options.light_color, options.ambient};
+                      options.light_color.value_or(glm::vec3(1.0f)), options.ambient};
     settings.materials = {options.roughness, options.metalness, options.normal_strength};
     settings.background = options.background;
     return settings;

@@ -30,12 +30,12 @@ struct Options {
     std::optional<std::uint32_t> samples;  ///< 1 or 4; none: by the device and the output
     std::optional<glm::vec3> camera_position;
     std::optional<glm::vec3> camera_target;
-    float vertical_fov = 60.0f;  ///< degrees, in (0, 180)
+    std::optional<float> vertical_fov;  ///< degrees, in (0, 180); none: 60
     std::optional<glm::vec3> light_position;
-    glm::vec3 light_color{1.0f};
+    std::optional<glm::vec3> light_color;  ///< none: 1, 1, 1
     glm::vec3 ambient{0.02f};
     glm::vec3 background{0.1f};
-    double time = 0.0;  ///< seconds of the light's orbit
+    double time = 0.0;               ///< seconds of the light's orbit
     std::optional<float> roughness;  ///< of every material, in [0, 1]; none: its own
     std::optional<float> metalness;  ///< the same
     float normal_strength = 1.0f;    ///< a factor on the slopes of all normal maps, in [0, 10]
@@ -61,6 +61,10 @@ std::optional<Options> parse_options(int argc, const char* const* argv);
 /// Writes a file that `--config` reads as these options, every number exactly. It replaces `path`
 /// whole. Throws mesh_format::FileError.
 void write_config(const std::filesystem::path& path, const Options& options);
+
+/// The options with what the scene asks for where they leave it open: its camera if they state
+/// neither position nor target, its light's position and colour.
+Options completed(Options options, const SceneStart& start);
 
 /// What the options ask a frame to show of a scene of these bounds, at the start of the light's
 /// orbit. `aspect` is the picture's width / height.

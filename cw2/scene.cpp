@@ -134,7 +134,8 @@ interop::DrawConstants constants_of(const Document& document, const MeshRecord& 
     constants.metalness = material.metalness;
     constants.alpha_cutoff = material.alpha_cutoff;
     constants.normal_map = normal_map_of(document, material);
-    constants.normal_scale = 1.0f;
+    constants.normal_scale = material.normal_scale;
+    constants.back_normals = material.flags & mesh_format::kFlipBackNormals ? -1.0f : 1.0f;
     return constants;
 }
 
@@ -151,6 +152,7 @@ Buffer upload_buffer(const Device& device, Uploader& uploader, std::span<const s
 Scene::Scene(const Device& device, const Layouts& layouts, const Document& document,
              const TextureSettings& settings)
     : bounds_(bounds_of(document.scene)),
+      start_(start_of(document.scene)),
       repeat_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, settings.anisotropy)),
       clamp_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, settings.anisotropy)) {
     Uploader uploader(device);

@@ -52,6 +52,7 @@ class Scene {
           const TextureSettings& settings);
 
     const Bounds& bounds() const { return bounds_; }
+    const SceneStart& start() const { return start_; }
     const std::vector<Draw>& draws() const { return draws_; }
     const std::vector<SceneChunk>& chunks() const { return chunks_; }
     VkBuffer vertices() const { return vertices_.handle.get(); }
@@ -73,6 +74,7 @@ class Scene {
                             const mesh_format::MaterialRecord& material) const;
 
     Bounds bounds_;
+    SceneStart start_;
     Buffer vertices_;
     Buffer indices_;
     std::vector<Memory> texture_memory_;

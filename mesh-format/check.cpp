@@ -41,6 +41,18 @@ void check_scene(const Checker& check, const SceneRecord& scene) {
                   "the scene's radius is invalid");
     check.require(scene.position_step == 0.0f || positive_power_of_two(scene.position_step),
                   "the scene's position step is no power of two");
+    check.require((scene.flags & ~std::uint32_t{kHasCamera | kHasLight}) == 0,
+                  "the scene has unknown flags");
+    check.require(all_finite(scene.camera_position) && all_finite(scene.camera_target),
+                  "the scene's camera is not finite");
+    if (scene.flags & kHasCamera) {
+        constexpr float kPi = 3.14159265f;
+        check.require(scene.camera_fov > 0.0f && scene.camera_fov < kPi &&
+                          !std::ranges::equal(scene.camera_position, scene.camera_target),
+                      "the scene's camera sees nothing");
+    }
+    check.require(all_finite(scene.light_position) && all_finite(scene.light_color),
+                  "the scene's light is not finite");
 }
 
 std::uint64_t vertex_bytes(const MeshRecord& mesh) {
@@ -116,7 +128,9 @@ void check_material(const Checker& check, const Document& document, std::size_t 
     require(in_unit_interval(material.roughness) && in_unit_interval(material.metalness) &&
                 in_unit_interval(material.alpha_cutoff),
             "a factor lies outside [0, 1]");
-    require((material.flags & ~std::uint32_t{kAlphaMask | kCullBack}) == 0, "unknown flags");
+    require(std::isfinite(material.normal_scale), "its normal scale is not finite");
+    require((material.flags & ~std::uint32_t{kAlphaMask | kCullBack | kFlipBackNormals}) == 0,
+            "unknown flags");
     for (const std::uint32_t texture :
          {material.base_color_texture, material.roughness_texture, material.metalness_texture,
           material.normal_texture, material.alpha_mask_texture}) {

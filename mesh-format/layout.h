@@ -112,6 +112,17 @@ struct SceneRecord {
     float frame_error_max;
     float
         uv_error;  ///< largest UV error, in texels of the mesh's largest texture (of 1024 if none)
+    std::uint32_t flags;       ///< SceneFlags
+    float camera_position[3];  ///< where a viewer starts, scene units; 0 without kHasCamera
+    float camera_target[3];    ///< another point
+    float camera_fov;          ///< vertical, radians, in (0, pi)
+    float light_position[3];   ///< where the light starts, scene units; 0 without kHasLight
+    float light_color[3];      ///< linear, without falloff
+};
+
+enum SceneFlags : std::uint32_t {
+    kHasCamera = 1,
+    kHasLight = 2,
 };
 
 struct MeshRecord {
@@ -147,8 +158,9 @@ struct ChunkRecord {
 };
 
 enum MaterialFlags : std::uint32_t {
-    kAlphaMask = 1,  ///< drawn by the alpha-mask pipeline
-    kCullBack = 2,   ///< back faces are not drawn; from OBJ: never set
+    kAlphaMask = 1,        ///< drawn by the alpha-mask pipeline
+    kCullBack = 2,         ///< back faces are not drawn; from OBJ: never set
+    kFlipBackNormals = 4,  ///< normals of back faces are turned to the viewer; from OBJ: never set
 };
 
 /// Factors multiply their texture's sample; an absent texture counts as 1 (normal: (0, 0, 1)).
@@ -158,6 +170,7 @@ struct MaterialRecord {
     float roughness;      ///< [0, 1], the alpha of the Blinn-Phong distribution
     float metalness;      ///< [0, 1]
     float alpha_cutoff;   ///< a fragment whose mask is below this is discarded
+    float normal_scale;   ///< multiplies x and y of what the normal texture holds
     std::uint32_t flags;  ///< MaterialFlags
     /// Indices into the textures section, or kNoTexture.
     std::uint32_t base_color_texture;
@@ -221,9 +234,9 @@ inline constexpr float kExactPsnr = 100.0f;
 inline constexpr std::uint32_t kMaxTextureSize = 16'384;
 
 static_assert(sizeof(Section) == 24 && sizeof(Header) == 32 + 24 * kSectionCount);
-static_assert(sizeof(SceneRecord) == 64 && sizeof(MeshRecord) == 96);
+static_assert(sizeof(SceneRecord) == 120 && sizeof(MeshRecord) == 96);
 static_assert(sizeof(ChunkRecord) == 40);
-static_assert(sizeof(MaterialRecord) == 56 && sizeof(TextureRecord) == 56);
+static_assert(sizeof(MaterialRecord) == 60 && sizeof(TextureRecord) == 56);
 static_assert(sizeof(SourceRecord) == 32);
 static_assert(std::is_trivially_copyable_v<Header> && std::is_trivially_copyable_v<MeshRecord>);
 

@@ -54,7 +54,8 @@ struct DrawConstants {
     float metalness;
     float alpha_cutoff;
     uint normal_map;     // kNormalMapAbsent...
-    float normal_scale;  // of the normal map's x and y
+    float normal_scale;  // multiplies x and y of what the normal map holds
+    float back_normals;  // multiplies the normals of back faces: 1 or -1
 };
 
 CW2_CONSTANT uint kNormalMapAbsent = 0;
@@ -71,8 +72,8 @@ CW2_CONSTANT uint kPositionFormConstant = 0;
 CW2_CONSTANT uint kFrameFormConstant = 1;
 CW2_CONSTANT uint kUvFormConstant = 2;
 CW2_CONSTANT uint kViewConstant = 3;
-CW2_CONSTANT uint kNormalMapConstant = 4;  // 0: the vertex normal shades
-CW2_CONSTANT uint kAlphaMaskConstant = 5;  // 0: nothing is discarded
+CW2_CONSTANT uint kNormalMapConstant = 4;     // 0: the vertex normal shades
+CW2_CONSTANT uint kAlphaMaskConstant = 5;     // 0: nothing is discarded
 CW2_CONSTANT uint kRoughnessMapConstant = 6;  // 0: the factor alone counts
 CW2_CONSTANT uint kMetalnessMapConstant = 7;  // the same
 CW2_CONSTANT uint kSpecializationCount = 8;
@@ -100,7 +101,7 @@ CW2_CONSTANT uint kViewCount = 17;
 #ifdef __cplusplus
 static_assert(offsetof(SceneUniforms, cameraPosition) == 192);
 static_assert(offsetof(SceneUniforms, ambientColor) == 240 && sizeof(SceneUniforms) == 256);
-static_assert(offsetof(DrawConstants, base_color) == 32 && sizeof(DrawConstants) == 64);
+static_assert(offsetof(DrawConstants, base_color) == 32 && sizeof(DrawConstants) == 68);
 }  // namespace cw2::interop
 #endif
 

@@ -23,17 +23,20 @@ layout(location = 4) in vec2 uv;
 
 layout(location = 0) out vec4 color;
 
+// Which side of the surface is seen, as a factor of its normals.
+float side() { return gl_FrontFacing ? 1.0 : draw.back_normals; }
+
+vec3 vertex_normal() { return side() * normalize(world_normal); }
+
 // In MikkTSpace's way: the bitangent from the interpolated normal and tangent as they are, only
 // the sum is normalised.
 vec3 shading_normal() {
-    if (use_normal_map == 0 || draw.normal_map == kNormalMapAbsent) {
-        return normalize(world_normal);
-    }
+    if (use_normal_map == 0 || draw.normal_map == kNormalMapAbsent) return vertex_normal();
     vec3 t = texture(normal_map, uv).xyz * 2.0 - 1.0;
     if (draw.normal_map == kNormalMapXy) t.z = sqrt(max(1.0 - dot(t.xy, t.xy), 0.0));
     t.xy *= draw.normal_scale;
     const vec3 bitangent = handedness * cross(world_normal, world_tangent);
-    return normalize(t.x * world_tangent + t.y * bitangent + t.z * world_normal);
+    return side() * normalize(t.x * world_tangent + t.y * bitangent + t.z * world_normal);
 }
 
 Surface surface_at_fragment() {
@@ -58,7 +61,7 @@ vec3 view_color(float alpha_mask) {
     const Brdf brdf = evaluate_brdf(surface, l, v);
     switch (view) {
         case kViewNormal: return as_color(surface.normal);
-        case kViewVertexNormal: return as_color(normalize(world_normal));
+        case kViewVertexNormal: return as_color(vertex_normal());
         case kViewViewDirection: return as_color(v);
         case kViewLightDirection: return as_color(l);
         case kViewDiffuse: return brdf.diffuse;
