@@ -52,8 +52,17 @@ TextureSet make_textures(const Settings& settings, const SourceScene& scene, con
         return {.textures = {}, .materials = std::vector<MaterialTextures>(scene.materials.size())};
     }
     ProgressBar bar(!settings.quiet);
-    return bake_textures(scene.materials, settings.textures, warn,
+    return bake_textures(scene.materials, settings.textures, settings.output, warn,
                          [&bar](double done, std::string_view name) { bar.update(done, name); });
+}
+
+/// A line for the summary, unless nothing was.
+std::string taken_over(const TextureSet& set) {
+    const auto count = std::ranges::count_if(
+        set.textures, [](const Texture& texture) { return !texture.earlier_payload.empty(); });
+    return count == 0 ? ""
+                      : fmt::format("  unchanged since the bake before: {} of {} textures\n", count,
+                                    set.textures.size());
 }
 
 std::vector<UvBudget> uv_budgets(const TextureSet& textures) {
@@ -130,10 +139,10 @@ Tables make_tables(const std::vector<SourceMaterial>& materials, const TextureSe
              .mip_count = mesh_format::full_mip_count(texture.width, texture.height),
              .psnr = texture.psnr,
              .offset = texel_bytes,
-             .size = texture.payload.size(),
+             .size = texture.bytes().size(),
              .checksum = texture.checksum});
-        tables.payloads.push_back(texture.payload);
-        texel_bytes += texture.payload.size();
+        tables.payloads.push_back(texture.bytes());
+        texel_bytes += texture.bytes().size();
     }
     return tables;
 }
@@ -193,6 +202,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
                                    .chunks = geometry.chunks,
                                    .materials = tables.materials,
                                    .textures = tables.textures,
+                                   .sources = textures.sources,
                                    .strings = tables.strings};
     EncodedGeometry encoded;
     if (settings.compress) {
@@ -206,7 +216,8 @@ std::string bake(const Settings& settings, const Warn& warn) {
     const std::uint64_t bytes = mesh_format::write(document, tables.payloads, settings.output);
     clock.end("write");
     if (settings.stats) write_stats(settings, {bytes, measure(meshes), geometry.scene, clock});
-    return fmt::format("{}\n{}", settings.output.string(), summary(document, bytes));
+    return fmt::format("{}\n{}{}", settings.output.string(), summary(document, bytes),
+                       taken_over(textures));
 }
 
 }  // namespace bake

@@ -215,9 +215,28 @@ void make_roughness(const ImageRequest& request, ImageCache& images, ImageResult
 
 }  // namespace
 
+RequestSettings settings_of(const ImageRequest& request) {
+    const auto of_map = [](const std::optional<TextureMap>& map) {
+        return map ? MapSettings(true, map->channel, map->clamp)
+                   : MapSettings(false, Channel::standard, false);
+    };
+    return {request.kind,           of_map(request.map),    of_map(request.alpha_map),
+            of_map(request.relief), request.alpha_cutoff,   request.color_alpha_is_mask,
+            request.bump_scale,     request.relief_is_bump, request.normal_scale,
+            request.factor};
+}
+
 const TextureMap& first_map(const ImageRequest& request) {
     // That of the relief, so that a batch decodes it once.
     return *(request.relief ? request.relief : request.map ? request.map : request.alpha_map);
+}
+
+std::string texture_name(const ImageRequest& request) {
+    return (request.map ? request.map : request.relief)->file.filename().string();
+}
+
+std::string mask_name(const ImageRequest& request) {
+    return (request.alpha_map ? request.alpha_map : request.map)->file.filename().string();
 }
 
 const Image& ImageCache::get(const TextureMap& map) {

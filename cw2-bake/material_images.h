@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "cw2-bake/read_image.h"
@@ -33,6 +34,12 @@ struct ImageRequest {
     float normal_scale = 1.0f;  ///< of a relief that is no bump
     float factor = 1.0f;        ///< of roughness, what its map is multiplied with
 };
+
+/// Everything that the textures of a request depend on, but what its images hold: numbers only.
+using MapSettings = std::tuple<bool, Channel, bool>;
+using RequestSettings = std::tuple<ImageRequest::Kind, MapSettings, MapSettings, MapSettings, float,
+                                   bool, float, bool, float, float>;
+RequestSettings settings_of(const ImageRequest& request);
 
 /// The map whose image is read for a request whatever it holds.
 const TextureMap& first_map(const ImageRequest& request);
@@ -64,5 +71,9 @@ class ImageCache {
 /// What says nothing makes no texture: a mask that hides nothing, a normal map that is flat. An
 /// image of one value becomes 1 x 1.
 ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCache& images);
+
+/// What make_textures() calls the texture and the mask of a request whose images it can use.
+std::string texture_name(const ImageRequest& request);
+std::string mask_name(const ImageRequest& request);
 
 }  // namespace bake

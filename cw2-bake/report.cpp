@@ -14,6 +14,7 @@ using mesh_format::FrameForm;
 using mesh_format::MaterialRecord;
 using mesh_format::MeshRecord;
 using mesh_format::PositionForm;
+using mesh_format::SourceRecord;
 using mesh_format::TextureFormat;
 using mesh_format::TextureRecord;
 using mesh_format::UvForm;
@@ -170,6 +171,22 @@ void list_textures(const Document& document, std::string& out) {
     }
 }
 
+/// Source keys as hexadecimal numbers.
+std::string key_text(const SourceRecord& source) {
+    return fmt::format("{:016x}{:016x}", source.key[1], source.key[0]);
+}
+
+void list_sources(const Document& document, std::string& out) {
+    for (const SourceRecord& source : document.sources) {
+        const auto index = [](std::uint32_t texture) {
+            return texture == mesh_format::kNoTexture ? "none" : std::to_string(texture);
+        };
+        fmt::format_to(std::back_inserter(out), "source {}: texture {}, alpha mask {}{}\n",
+                       key_text(source), index(source.texture), index(source.alpha_mask),
+                       source.flags & mesh_format::kHoldsFactor ? ", holds its factor" : "");
+    }
+}
+
 bool in_blocks(const TextureRecord& texture) {
     return mesh_format::block_extent(texture.format) > 1;
 }
@@ -236,6 +253,7 @@ std::string inspection(const Document& document, std::uint64_t file_bytes) {
     list_meshes(document, out);
     list_materials(document, out);
     list_textures(document, out);
+    list_sources(document, out);
     return out;
 }
 
@@ -271,18 +289,24 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
             json_text(document.text(texture.name)), name_of(texture.format), texture.width,
             texture.height, texture.mip_count, texture.size, texture.psnr);
     });
+    const std::string sources = json_array(document.sources, [](const SourceRecord& source) {
+        return fmt::format(
+            "{{\"key\": \"{}\", \"texture\": {}, \"alpha_mask\": {}, \"holds_factor\": {}}}",
+            key_text(source), json_texture(source.texture), json_texture(source.alpha_mask),
+            (source.flags & mesh_format::kHoldsFactor) != 0);
+    });
     return fmt::format(
         "{{\n  \"format_version\": {},\n  \"bytes\": {},\n  \"vertex_bytes\": {},\n"
         "  \"index_bytes\": {},\n  \"texel_bytes\": {},\n  \"vertices\": {},\n"
         "  \"triangles\": {},\n  \"bounds_min\": [{}, {}, {}],\n  \"bounds_max\": [{}, {}, {}],\n"
         "  \"radius\": {},\n  \"position_error\": {},\n  \"frame_error_mean_degrees\": {},\n"
         "  \"frame_error_max_degrees\": {},\n  \"uv_error_texels\": {},\n  \"meshes\": {},\n"
-        "  \"materials\": {},\n  \"textures\": {}\n}}\n",
+        "  \"materials\": {},\n  \"textures\": {},\n  \"sources\": {}\n}}\n",
         mesh_format::kVersion, file_bytes, counts.vertex_bytes, counts.index_bytes,
         counts.texel_bytes, counts.vertices, counts.triangles, scene.bounds_min[0],
         scene.bounds_min[1], scene.bounds_min[2], scene.bounds_max[0], scene.bounds_max[1],
         scene.bounds_max[2], scene.radius, scene.position_error, scene.frame_error_mean,
-        scene.frame_error_max, scene.uv_error, meshes, materials, textures);
+        scene.frame_error_max, scene.uv_error, meshes, materials, textures, sources);
 }
 
 }  // namespace bake

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +14,7 @@
 #include "cw2-bake/diagnostics.h"
 #include "cw2-bake/settings.h"
 #include "cw2-bake/source_scene.h"
+#include "mesh-format/io.h"
 #include "mesh-format/layout.h"
 
 namespace bake {
@@ -25,7 +28,12 @@ struct Texture {
     std::uint32_t height = 0;
     float psnr = 0.0f;  ///< as in mesh_format::TextureRecord
     std::vector<std::byte> payload;
-    std::uint64_t checksum = 0;  ///< mesh_format::checksum() of the payload, once it is finished
+    std::span<const std::byte> earlier_payload;  ///< instead, in TextureSet::earlier_file
+    std::uint64_t checksum = 0;  ///< mesh_format::checksum() of bytes(), once they are finished
+
+    std::span<const std::byte> bytes() const {
+        return payload.empty() ? earlier_payload : std::span<const std::byte>(payload);
+    }
 };
 
 /// What one material samples: indices into TextureSet::textures, or mesh_format::kNoTexture.
@@ -41,6 +49,8 @@ struct MaterialTextures {
 struct TextureSet {
     std::vector<Texture> textures;  ///< equal textures are stored once, in order of first use
     std::vector<MaterialTextures> materials;  ///< one a material
+    std::vector<mesh_format::SourceRecord> sources;
+    std::shared_ptr<const mesh_format::MappedFile> earlier_file;
 };
 
 /// Told how much of the textures is done, in [0, 1], and the name of the image at work; called
@@ -50,7 +60,9 @@ using TextureProgress = std::function<void(double done, std::string_view name)>;
 /// Reads and filters every image the materials name, and compresses it if `mode` says so, on as
 /// many threads as TBB is allowed; the result does not depend on their number. An image that is
 /// missing or cannot be read is a warning that names it, and the material goes on without it.
+/// What an earlier bake left at `earlier` is used again where it is what would be made anew.
 TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode mode,
-                         const Warn& warn, const TextureProgress& progress);
+                         const std::filesystem::path& earlier, const Warn& warn,
+                         const TextureProgress& progress);
 
 }  // namespace bake

@@ -32,7 +32,7 @@ struct Baked {
 Baked bake_all(const std::vector<SourceMaterial>& materials) {
     Baked baked;
     baked.set =
-        bake::bake_textures(materials, bake::TextureMode::lossless,
+        bake::bake_textures(materials, bake::TextureMode::lossless, {},
                             [&](const std::string& line) { baked.warnings.push_back(line); }, {});
     EXPECT_EQ(baked.set.materials.size(), materials.size());
     for (const Texture& texture : baked.set.textures) {
@@ -190,7 +190,7 @@ void expect_refused(const std::filesystem::path& path, const std::string& cause)
     std::size_t in_blocks = 0;
     const bake::TextureSet blocks =
         bake::bake_textures({{with_roughness(map_of(path, "lib/x.mtl:42"))}}, bake::TextureMode::bc,
-                            [&](const std::string&) { ++in_blocks; }, {});
+                            {}, [&](const std::string&) { ++in_blocks; }, {});
     EXPECT_EQ(in_blocks, 1u);
     EXPECT_TRUE(blocks.textures.empty());
     const Baked baked = bake_all({with_roughness(map_of(path, "lib/x.mtl:42"))});
@@ -280,7 +280,7 @@ TEST(BadImages, OneWarningAnImageInOrderOfFirstUse) {
 TEST(BadImages, AWarningMayEndTheBake) {
     const std::vector<SourceMaterial> materials{with_color(map_of("/nowhere/a.png"))};
     const bake::Warn strict = [](const std::string& line) { throw bake::BakeError(line); };
-    EXPECT_THROW(bake::bake_textures(materials, bake::TextureMode::lossless, strict, {}),
+    EXPECT_THROW(bake::bake_textures(materials, bake::TextureMode::lossless, {}, strict, {}),
                  bake::BakeError);
 }
 

@@ -17,7 +17,7 @@ using bake::TextureSet;
 using mesh_format::kNoTexture;
 
 TextureSet bake_quietly(const std::vector<SourceMaterial>& materials) {
-    return bake::bake_textures(materials, bake::TextureMode::lossless,
+    return bake::bake_textures(materials, bake::TextureMode::lossless, {},
                                [](const std::string& line) { ADD_FAILURE() << line; }, {});
 }
 
@@ -162,7 +162,7 @@ TEST(NormalMaps, ThatAreGreyAreNamedAndIgnored) {
     material.normal_map = map_of(folder / "grey.png", "b.mtl:9");
     std::vector<std::string> warnings;
     const TextureSet set =
-        bake::bake_textures(std::vector{material}, bake::TextureMode::lossless,
+        bake::bake_textures(std::vector{material}, bake::TextureMode::lossless, {},
                             [&](const std::string& line) { warnings.push_back(line); }, {});
     EXPECT_EQ(set.materials[0].normal, kNoTexture);
     ASSERT_EQ(warnings.size(), 1u);
@@ -262,7 +262,7 @@ TEST(Progress, RisesToOneAndNamesTheImages) {
     double last = 0.0;
     std::vector<std::string> names;
     bake::bake_textures(
-        std::vector{material}, bake::TextureMode::lossless, [](const std::string&) {},
+        std::vector{material}, bake::TextureMode::lossless, {}, [](const std::string&) {},
         [&](double done, std::string_view name) {
             EXPECT_GE(done, last);
             last = done;
@@ -289,7 +289,7 @@ TEST(Blocks, BumpsBecomeRoughnessAtSmallerLevelsWithTheFactorInIt) {
     SourceMaterial rough = smooth;
     rough.roughness = 1.0f;
     const auto bake_as = [&](bake::TextureMode mode) {
-        return bake::bake_textures({{smooth, rough}}, mode,
+        return bake::bake_textures({{smooth, rough}}, mode, {},
                                    [](const std::string& line) { ADD_FAILURE() << line; }, {});
     };
     const TextureSet blocks = bake_as(bake::TextureMode::bc);
@@ -321,7 +321,7 @@ TEST(Blocks, EveryUseHasItsFormat) {
     material.metalness_map = map_of(folder / "grey.png");
     material.normal_map = map_of(folder / "ridges.png");
     const TextureSet set =
-        bake::bake_textures({{material}}, bake::TextureMode::bc,
+        bake::bake_textures({{material}}, bake::TextureMode::bc, {},
                             [](const std::string& line) { ADD_FAILURE() << line; }, {});
     const bake::MaterialTextures& uses = set.materials[0];
     const auto format = [&](std::uint32_t index) { return set.textures.at(index).format; };
