@@ -2,21 +2,19 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <thread>
-#include <utility>
 
 #include "cw2-bake/chunks.h"
 #include "cw2-bake/compress.h"
-#include "cw2-bake/framed_mesh.h"
 #include "cw2-bake/normals.h"
 #include "cw2-bake/progress.h"
 #include "cw2-bake/quantise.h"
 #include "cw2-bake/read_obj.h"
 #include "cw2-bake/report.h"
 #include "cw2-bake/stats.h"
+#include "cw2-bake/tangents.h"
 #include "cw2-bake/textures.h"
 #include "cw2-bake/up_axis.h"
 #include "cw2-bake/weld.h"
@@ -30,22 +28,6 @@ using mesh_format::kNoTexture;
 using mesh_format::MaterialRecord;
 using mesh_format::StringRef;
 using mesh_format::TextureRecord;
-
-/// Welds the scene's triangles, gives them their frames, and cuts them into chunks; the meshes come
-/// in the order of their materials. Each step frees what the one before it made, since that is what
-/// the peak memory of a bake consists of; of the scene its geometry is gone.
-std::vector<ChunkedMesh> make_meshes(SourceScene& scene, std::span<const UvBudget> budgets) {
-    std::vector<WeldedMesh> welded = weld(scene);
-    scene = {.materials = std::move(scene.materials), .camera = scene.camera, .light = scene.light};
-    std::vector<std::vector<ChunkedMesh>> pieces(welded.size());
-    tbb::parallel_for(std::size_t{0}, welded.size(), [&](std::size_t i) {
-        const FramedMesh framed = add_tangents(std::exchange(welded[i], {}));
-        pieces[i] = make_chunks(framed, budgets[framed.material]);
-    });
-    std::vector<ChunkedMesh> meshes;
-    for (auto& part : pieces) std::move(part.begin(), part.end(), std::back_inserter(meshes));
-    return meshes;
-}
 
 TextureSet make_textures(const Settings& settings, const SourceScene& scene, const Warn& warn) {
     if (settings.textures == TextureMode::none) {
@@ -189,10 +171,15 @@ std::string bake(const Settings& settings, const Warn& warn) {
     const TextureSet textures = make_textures(settings, scene, warn);
     clock.end("textures");
     const std::vector<UvBudget> budgets = uv_budgets(textures);
-    const std::vector<ChunkedMesh> meshes = make_meshes(scene, budgets);
-    clock.end("weld, tangents, chunks");
+    weld(scene);
+    clock.end("weld");
+    const FramedTriangles framed = add_tangents(scene);
+    clock.end("tangents");
+    const FramedScene framed_scene{scene, framed};
+    const std::vector<ChunkedMesh> meshes = make_chunks(framed_scene, budgets);
+    clock.end("chunks");
     PackedGeometry geometry =
-        quantise(meshes, budgets, {settings.frame_form, settings.position_form});
+        quantise(framed_scene, meshes, budgets, {settings.frame_form, settings.position_form});
     add_start(scene, geometry.scene);
     const Tables tables = make_tables(scene.materials, textures);
     clock.end("pack");
@@ -215,8 +202,10 @@ std::string bake(const Settings& settings, const Warn& warn) {
     }
     const std::uint64_t bytes = mesh_format::write(document, tables.payloads, settings.output);
     clock.end("write");
-    if (settings.stats) write_stats(settings, {bytes, measure(meshes), geometry.scene, clock});
-    return fmt::format("{}\n{}{}", settings.output.string(), summary(document, bytes),
+    if (settings.stats)
+        write_stats(settings, {bytes, measure(framed_scene, meshes), geometry.scene, clock});
+    return fmt::format("{}
+{}{}", settings.output.string(), summary(document, bytes),
                        taken_over(textures));
 }
 

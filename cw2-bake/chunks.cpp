@@ -1,100 +1,28 @@
 #include "cw2-bake/chunks.h"
 
 #include <meshoptimizer.h>
+#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
-#include <limits>
-#include <span>
 
-#include "mesh-format/layout.h"
+#include "cw2-bake/chunk_split.h"
+#include "cw2-bake/triangle_order.h"
 
 namespace bake {
 
 namespace {
 
-using mesh_format::kMaxChunkTriangles;
+using mesh_format::ChunkRecord;
 
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 // Steps of a 16-bit lattice, less one for where its ends are rounded to.
 constexpr double kLatticeSpan = 65'534.0;
-// Below this many triangles a task of its own costs more than it saves.
-constexpr std::size_t kParallelSplit = 16'384;
-// How much longer the vertex cache may work so that less is drawn over.
-constexpr float kOverdrawThreshold = 1.05f;
 
-struct Triangle {
-    glm::vec3 centroid;  // times 3/4
-    std::uint32_t index;
-};
-
-/// [first, last) of the triangles, once they are in chunk order.
-struct Range {
-    std::uint32_t first, last;
-};
-
-/// The number of chunks that `count` triangles are halved into.
-std::size_t chunk_count(std::size_t count) {
-    return count <= kMaxChunkTriangles ? 1
-                                       : chunk_count(count / 2) + chunk_count(count - count / 2);
-}
-
-int longest_axis(std::span<const Triangle> triangles) {
-    glm::vec3 low(std::numeric_limits<float>::infinity());
-    glm::vec3 high = -low;
-    for (const Triangle& triangle : triangles) {
-        low = glm::min(low, triangle.centroid);
-        high = glm::max(high, triangle.centroid);
-    }
-    const glm::vec3 extent = high - low;
-    return extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-}
-
-/// Orders `triangles`, which start at `first` of all, so that each chunk's follow each other, and
-/// writes the chunks' ranges.
-void split(std::span<Triangle> triangles, std::uint32_t first, std::span<Range> chunks) {
-    if (chunks.size() == 1) {
-        // Back to the source's order: it does not depend on how the halves were found.
-        std::sort(triangles.begin(), triangles.end(),
-                  [](const Triangle& a, const Triangle& b) { return a.index < b.index; });
-        chunks.front() = {first, first + static_cast<std::uint32_t>(triangles.size())};
-        return;
-    }
-    const int axis = longest_axis(triangles);
-    const std::size_t half = triangles.size() / 2;
-    std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half),
-                     triangles.end(), [axis](const Triangle& a, const Triangle& b) {
-                         return a.centroid[axis] != b.centroid[axis]
-                                    ? a.centroid[axis] < b.centroid[axis]
-                                    : a.index < b.index;
-                     });
-    const std::size_t low_chunks = chunk_count(half);
-    const auto low = [&] { split(triangles.first(half), first, chunks.first(low_chunks)); };
-    const auto high = [&] {
-        split(triangles.subspan(half), first + static_cast<std::uint32_t>(half),
-              chunks.subspan(low_chunks));
-    };
-    if (triangles.size() >= kParallelSplit) {
-        tbb::parallel_invoke(low, high);
-    } else {
-        low();
-        high();
-    }
-}
-
-struct UvBox {
-    glm::vec2 low{std::numeric_limits<float>::infinity()};
-    glm::vec2 high{-std::numeric_limits<float>::infinity()};
-
-    void add(const glm::vec2& uv) {
-        low = glm::min(low, uv);
-        high = glm::max(high, uv);
-    }
-};
+using UvBox = Box<glm::vec2>;
 
 /// The range of UVs that 16 bits hold within a budget.
 class UvLimit {
@@ -110,118 +38,141 @@ class UvLimit {
     double range_;
 };
 
-/// Halves `range` by UV as long as it exceeds the limit, and writes what results to `chunks`.
-void split_by_uv(const FramedMesh& mesh, const UvLimit& limit, std::span<Triangle> triangles,
-                 Range range, std::vector<Range>& chunks) {
-    UvBox box;
-    const auto part = triangles.subspan(range.first, range.last - range.first);
-    for (const Triangle& triangle : part) {
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-            box.add(mesh.uvs[mesh.indices[3 * std::size_t{triangle.index} + corner]]);
-        }
-    }
-    if (part.size() == 1 || !limit.exceeded_by(box)) {
-        chunks.push_back(range);
-        return;
-    }
-    const int axis = box.high.x - box.low.x >= box.high.y - box.low.y ? 0 : 1;
-    const auto uv_of = [&](const Triangle& triangle) {
-        const auto corner = [&](std::size_t k) {
-            return mesh.uvs[mesh.indices[3 * std::size_t{triangle.index} + k]][axis];
-        };
-        return std::max({corner(0), corner(1), corner(2)});
-    };
-    std::sort(part.begin(), part.end(), [&](const Triangle& a, const Triangle& b) {
-        return std::pair(uv_of(a), a.index) < std::pair(uv_of(b), b.index);
-    });
-    const std::uint32_t half = range.first + static_cast<std::uint32_t>(part.size() / 2);
-    split_by_uv(mesh, limit, triangles, {range.first, half}, chunks);
-    split_by_uv(mesh, limit, triangles, {half, range.last}, chunks);
-}
+/// A finished chunk, before it has its place in a mesh: first_index counts from the material's.
+struct FinishedChunk {
+    ChunkRecord record;
+    UvBox uvs;
+};
 
-/// Orders the triangles of one chunk; reused from chunk to chunk by one thread.
-class ChunkOptimiser {
+/// Makes chunks of the parts that a material's triangles are cut into; used by one thread.
+class ChunkMaker {
  public:
-    explicit ChunkOptimiser(const FramedMesh& mesh)
-        : mesh_(mesh), local_(mesh.positions.size(), kNone) {}
+    explicit ChunkMaker(const FramedScene& scene)
+        : scene_(scene), local_(scene.framed.vertices.size(), kNone) {}
 
-    /// Writes the indices of `triangles` to `out` in their best order.
-    void run(std::span<const Triangle> triangles, std::uint32_t* out) {
+    /// Halves `triangles` by UV as long as they exceed the limit. The chunks that result go to
+    /// `chunks`, their vertices to `out`, where the first is index `first_index`.
+    void make(std::span<CentredTriangle> triangles, const UvLimit& limit, std::uint32_t first_index,
+              std::span<std::uint32_t> out, std::vector<FinishedChunk>& chunks) {
+        gather(triangles);
+        UvBox uvs;
+        for (const std::uint32_t vertex : vertices_) uvs.add(scene_.uv(vertex));
+        if (triangles.size() == 1 || !limit.exceeded_by(uvs)) {
+            order(out);
+            chunks.push_back({bounds(first_index), uvs});
+            return;
+        }
+        sort_by_uv(triangles, uvs.high.x - uvs.low.x >= uvs.high.y - uvs.low.y ? 0 : 1);
+        const std::size_t half = triangles.size() / 2;
+        make(triangles.first(half), limit, first_index, out.first(3 * half), chunks);
+        make(triangles.subspan(half), limit, first_index + static_cast<std::uint32_t>(3 * half),
+             out.subspan(3 * half), chunks);
+    }
+
+ private:
+    std::span<const std::uint32_t> corners_of(const CentredTriangle& triangle) const {
+        return std::span(scene_.framed.indices).subspan(3 * std::size_t{triangle.index}, 3);
+    }
+
+    void gather(std::span<const CentredTriangle> triangles) {
         vertices_.clear();
         positions_.clear();
         indices_.clear();
-        for (const Triangle& triangle : triangles) {
-            for (std::size_t corner = 0; corner < 3; ++corner) {
-                const std::uint32_t vertex =
-                    mesh_.indices[3 * std::size_t{triangle.index} + corner];
+        for (const CentredTriangle& triangle : triangles) {
+            for (const std::uint32_t vertex : corners_of(triangle)) {
                 if (local_[vertex] == kNone) {
                     local_[vertex] = static_cast<std::uint32_t>(vertices_.size());
                     vertices_.push_back(vertex);
-                    positions_.push_back(mesh_.positions[vertex]);
+                    positions_.push_back(scene_.position(vertex));
                 }
-                indices_.push_back(local_[vertex]);
+                indices_.push_back(static_cast<std::uint16_t>(local_[vertex]));
             }
         }
         for (const std::uint32_t vertex : vertices_) local_[vertex] = kNone;
-
-        ordered_.resize(indices_.size());
-        meshopt_optimizeVertexCache(ordered_.data(), indices_.data(), indices_.size(),
-                                    vertices_.size());
-        meshopt_optimizeOverdraw(indices_.data(), ordered_.data(), indices_.size(),
-                                 &positions_.front().x, positions_.size(), sizeof(glm::vec3),
-                                 kOverdrawThreshold);
-        for (std::size_t i = 0; i < indices_.size(); ++i) out[i] = vertices_[indices_[i]];
     }
 
- private:
-    const FramedMesh& mesh_;
-    std::vector<std::uint32_t> local_;     // mesh vertex -> chunk vertex
-    std::vector<std::uint32_t> vertices_;  // chunk vertex -> mesh vertex
-    std::vector<glm::vec3> positions_;
-    std::vector<std::uint32_t> indices_, ordered_;
-};
-
-/// Gathers chunks into meshes.
-class Assembler {
- public:
-    Assembler(const FramedMesh& source, UvLimit limit)
-        : source_(source), limit_(limit), placed_(source.positions.size(), kNone) {}
-
-    void add(std::span<const std::uint32_t> indices) {
-        UvBox box;
-        for (const std::uint32_t vertex : indices) box.add(source_.uvs[vertex]);
-        const UvBox merged{glm::min(box_.low, box.low), glm::max(box_.high, box.high)};
-        // A chunk too wide by itself shares a mesh with others of that kind only.
-        const bool uvs_fit = limit_.exceeded_by(merged) == limit_.exceeded_by(box) &&
-                             limit_.exceeded_by(merged) == limit_.exceeded_by(box_);
-        if (meshes_.empty() || !uvs_fit || !has_room(indices)) start_mesh();
-        box_ = {glm::min(box_.low, box.low), glm::max(box_.high, box.high)};
-        ChunkedMesh& piece = meshes_.back();
-        FramedMesh& mesh = piece.mesh;
-        piece.chunks.push_back({static_cast<std::uint32_t>(mesh.indices.size()),
-                                static_cast<std::uint32_t>(indices.size())});
-        for (const std::uint32_t vertex : indices) {
-            if (placed_[vertex] == kNone) {
-                placed_[vertex] = static_cast<std::uint32_t>(members_.size());
-                members_.push_back(vertex);
-                mesh.positions.push_back(source_.positions[vertex]);
-                mesh.normals.push_back(source_.normals[vertex]);
-                mesh.uvs.push_back(source_.uvs[vertex]);
-                mesh.tangents.push_back(source_.tangents[vertex]);
-            }
-            mesh.indices.push_back(placed_[vertex]);
+    /// Writes the gathered triangles in their best order.
+    void order(std::span<std::uint32_t> out) {
+        std::size_t next = 0;
+        for (const std::uint16_t triangle : order_.order(indices_, vertices_.size())) {
+            for (std::size_t corner = 0; corner < 3; ++corner)
+                out[next++] = vertices_[indices_[3 * std::size_t{triangle} + corner]];
         }
     }
 
-    std::vector<ChunkedMesh> take() { return std::move(meshes_); }
+    ChunkRecord bounds(std::uint32_t first_index) const {
+        const meshopt_Bounds bounds =
+            meshopt_computeClusterBounds(indices_.data(), indices_.size(), &positions_.front().x,
+                                         positions_.size(), sizeof(glm::vec3));
+        ChunkRecord record{.first_index = first_index,
+                           .index_count = static_cast<std::uint32_t>(indices_.size()),
+                           .radius = bounds.radius,
+                           .cone_cutoff = bounds.cone_cutoff};
+        for (int axis = 0; axis < 3; ++axis) {
+            record.center[axis] = bounds.center[axis];
+            record.cone_axis[axis] = bounds.cone_axis[axis];
+        }
+        return record;
+    }
+
+    void sort_by_uv(std::span<CentredTriangle> triangles, int axis) const {
+        const auto key = [&](const CentredTriangle& triangle) {
+            const auto corners = corners_of(triangle);
+            return std::pair(std::max({scene_.uv(corners[0])[axis], scene_.uv(corners[1])[axis],
+                                       scene_.uv(corners[2])[axis]}),
+                             triangle.index);
+        };
+        std::ranges::sort(triangles, {}, key);
+    }
+
+    const FramedScene& scene_;
+    TriangleOrder order_;
+    std::vector<std::uint32_t> local_;     // vertex -> chunk vertex
+    std::vector<std::uint32_t> vertices_;  // chunk vertex -> vertex
+    std::vector<glm::vec3> positions_;     // of chunk vertices
+    std::vector<std::uint16_t> indices_;   // of chunk vertices
+};
+
+/// Gathers the chunks of one material into meshes.
+class Assembler {
+ public:
+    Assembler(const FramedScene& scene, std::uint32_t material, UvLimit limit,
+              std::vector<std::uint32_t>& placed)
+        : scene_(scene), material_(material), limit_(limit), placed_(placed) {}
+
+    void add(const FinishedChunk& chunk, std::span<const std::uint32_t> vertices) {
+        UvBox merged = box_;
+        merged.add(chunk.uvs);
+        // A chunk too wide by itself shares a mesh with others of that kind only.
+        const bool uvs_fit = limit_.exceeded_by(merged) == limit_.exceeded_by(chunk.uvs) &&
+                             limit_.exceeded_by(merged) == limit_.exceeded_by(box_);
+        if (meshes_.empty() || !uvs_fit || !has_room(vertices)) start_mesh();
+        box_.add(chunk.uvs);
+        ChunkedMesh& mesh = meshes_.back();
+        mesh.chunks.push_back(chunk.record);
+        mesh.chunks.back().first_index = static_cast<std::uint32_t>(mesh.indices.size());
+        for (const std::uint32_t vertex : vertices) {
+            if (placed_[vertex] == kNone) {
+                placed_[vertex] = static_cast<std::uint32_t>(mesh.vertices.size());
+                mesh.vertices.push_back(vertex);
+                mesh.positions.add(scene_.position(vertex));
+            }
+            mesh.indices.push_back(static_cast<std::uint16_t>(placed_[vertex]));
+        }
+    }
+
+    std::vector<ChunkedMesh> take() {
+        finish_mesh();
+        return std::move(meshes_);
+    }
 
  private:
-    bool has_room(std::span<const std::uint32_t> indices) const {
+    bool has_room(std::span<const std::uint32_t> vertices) const {
         // Every index may name a new vertex; only near the limit is it worth to count.
-        const std::size_t room = mesh_format::kMaxMeshVertices - members_.size();
-        if (indices.size() <= room) return true;
+        const std::size_t room = mesh_format::kMaxMeshVertices - meshes_.back().vertices.size();
+        if (vertices.size() <= room) return true;
         std::vector<std::uint32_t> fresh;
-        std::copy_if(indices.begin(), indices.end(), std::back_inserter(fresh),
+        std::copy_if(vertices.begin(), vertices.end(), std::back_inserter(fresh),
                      [this](std::uint32_t vertex) { return placed_[vertex] == kNone; });
         std::sort(fresh.begin(), fresh.end());
         const auto end = std::unique(fresh.begin(), fresh.end());
@@ -229,57 +180,102 @@ class Assembler {
     }
 
     void start_mesh() {
-        for (const std::uint32_t vertex : members_) placed_[vertex] = kNone;
-        members_.clear();
+        if (!meshes_.empty()) finish_mesh();
         box_ = {};
-        meshes_.emplace_back().mesh.material = source_.material;
+        meshes_.emplace_back().material = material_;
     }
 
-    const FramedMesh& source_;
+    void finish_mesh() {
+        ChunkedMesh& mesh = meshes_.back();
+        mesh.uvs = box_;
+        for (const std::uint32_t vertex : mesh.vertices) placed_[vertex] = kNone;
+    }
+
+    const FramedScene& scene_;
+    std::uint32_t material_;
     UvLimit limit_;
     UvBox box_;                           // of the last mesh
-    std::vector<std::uint32_t> placed_;   // source vertex -> vertex of the last mesh
-    std::vector<std::uint32_t> members_;  // vertex of the last mesh -> source vertex
+    std::vector<std::uint32_t>& placed_;  // vertex -> vertex of the last mesh
     std::vector<ChunkedMesh> meshes_;
 };
 
-std::vector<Triangle> triangles_of(const FramedMesh& mesh) {
-    std::vector<Triangle> triangles(mesh.indices.size() / 3);
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        // Scaled so that no sum of finite positions overflows.
-        triangles[i] = {0.25f * mesh.positions[mesh.indices[3 * i]] +
-                            0.25f * mesh.positions[mesh.indices[3 * i + 1]] +
-                            0.25f * mesh.positions[mesh.indices[3 * i + 2]],
-                        static_cast<std::uint32_t>(i)};
-    }
-    return triangles;
+/// The triangles by material, each material's in the source's order.
+struct TrianglesByMaterial {
+    std::vector<std::size_t> first;  ///< by material, and the end of the last
+    std::vector<CentredTriangle> triangles;
+};
+
+TrianglesByMaterial sort_by_material(const SourceScene& scene) {
+    TrianglesByMaterial result;
+    result.first.assign(scene.materials.size() + 1, 0);
+    for (const std::uint32_t material : scene.triangle_material) ++result.first[material + 1];
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) result.first[m + 1] += result.first[m];
+    result.triangles.resize(scene.triangle_material.size());
+    std::vector<std::size_t> next = result.first;
+    for (std::uint32_t t = 0; t < scene.triangle_material.size(); ++t)
+        result.triangles[next[scene.triangle_material[t]]++].index = t;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.triangles.size(), 1 << 13),
+                      [&](const auto& block) {
+                          for (std::size_t i = block.begin(); i < block.end(); ++i) {
+                              CentredTriangle& triangle = result.triangles[i];
+                              const Corner* corners =
+                                  &scene.corners[3 * std::size_t{triangle.index}];
+                              // Scaled so that no sum of finite positions overflows.
+                              triangle.centroid = 0.25f * scene.positions[corners[0].position] +
+                                                  0.25f * scene.positions[corners[1].position] +
+                                                  0.25f * scene.positions[corners[2].position];
+                          }
+                      });
+    return result;
 }
 
 }  // namespace
 
-std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh, const UvBudget& budget) {
-    std::vector<Triangle> triangles = triangles_of(mesh);
-    std::vector<Range> near(chunk_count(triangles.size()));
-    split(triangles, 0, near);
-    const UvLimit limit(budget);
-    std::vector<Range> ranges;
-    for (const Range range : near) split_by_uv(mesh, limit, triangles, range, ranges);
+std::vector<ChunkedMesh> make_chunks(const FramedScene& scene, std::span<const UvBudget> budgets) {
+    TrianglesByMaterial sorted = sort_by_material(scene.source);
+    tbb::enumerable_thread_specific<ChunkMaker> makers([&] { return ChunkMaker(scene); });
+    tbb::enumerable_thread_specific<std::vector<std::uint32_t>> placed(scene.framed.vertices.size(),
+                                                                       kNone);
 
-    std::vector<std::uint32_t> indices(mesh.indices.size());
-    tbb::enumerable_thread_specific<ChunkOptimiser> optimisers(
-        [&] { return ChunkOptimiser(mesh); });
-    tbb::parallel_for(std::size_t{0}, ranges.size(), [&](std::size_t i) {
-        const Range range = ranges[i];
-        optimisers.local().run(std::span(triangles).subspan(range.first, range.last - range.first),
-                               indices.data() + 3 * std::size_t{range.first});
+    const auto chunks_of = [&](std::uint32_t material) {
+        const std::size_t first = sorted.first[material];
+        const auto triangles =
+            std::span(sorted.triangles).subspan(first, sorted.first[material + 1] - first);
+        const UvLimit limit(budgets[material]);
+        std::vector<std::uint32_t> vertices(3 * triangles.size());
+        std::vector<std::vector<FinishedChunk>> parts(part_count(triangles.size()));
+        split(triangles, [&](std::size_t part, std::size_t begin, std::size_t end) {
+            makers.local().make(
+                triangles.subspan(begin, end - begin), limit, static_cast<std::uint32_t>(3 * begin),
+                std::span(vertices).subspan(3 * begin, 3 * (end - begin)), parts[part]);
+        });
+        Assembler assembler(scene, material, limit, placed.local());
+        for (const auto& part : parts) {
+            for (const FinishedChunk& chunk : part)
+                assembler.add(chunk, std::span(vertices).subspan(chunk.record.first_index,
+                                                                 chunk.record.index_count));
+        }
+        return assembler.take();
+    };
+
+    // The largest first, so that no thread is left alone with one.
+    std::vector<std::uint32_t> materials;
+    for (std::uint32_t m = 0; m < scene.source.materials.size(); ++m)
+        if (sorted.first[m] < sorted.first[m + 1]) materials.push_back(m);
+    std::ranges::stable_sort(materials, std::greater(), [&](std::uint32_t m) {
+        return sorted.first[m + 1] - sorted.first[m];
     });
-
-    Assembler assembler(mesh, limit);
-    for (const Range range : ranges) {
-        assembler.add(std::span(indices).subspan(3 * std::size_t{range.first},
-                                                 3 * std::size_t{range.last - range.first}));
-    }
-    return assembler.take();
+    std::vector<std::vector<ChunkedMesh>> pieces(scene.source.materials.size());
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, materials.size(), 1),
+        [&](const auto& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i)
+                pieces[materials[i]] = chunks_of(materials[i]);
+        },
+        tbb::simple_partitioner());
+    std::vector<ChunkedMesh> meshes;
+    for (auto& part : pieces) std::move(part.begin(), part.end(), std::back_inserter(meshes));
+    return meshes;
 }
 
 }  // namespace bake

@@ -1,10 +1,15 @@
-// Cutting meshes into chunks for culling, and ordering what is in them for the GPU.
+// Cutting a material's triangles into chunks for culling, and into meshes for 16-bit indices.
 #pragma once
 
 #include <cstdint>
+#include <glm/common.hpp>
+#include <limits>
+#include <span>
 #include <vector>
 
-#include "cw2-bake/framed_mesh.h"
+#include "cw2-bake/source_scene.h"
+#include "cw2-bake/tangents.h"
+#include "mesh-format/layout.h"
 
 namespace bake {
 
@@ -17,23 +22,57 @@ struct UvBudget {
     double largest_step() const { return 0.25 / texels; }
 };
 
-/// Triangles of a mesh that lie close together.
-struct Chunk {
-    std::uint32_t first_index;  ///< into the mesh's indices
-    std::uint32_t index_count;
+/// A scene's triangles over framed vertices.
+struct FramedScene {
+    const SourceScene& source;  ///< welded
+    const FramedTriangles& framed;
+
+    const glm::vec3& position(std::uint32_t vertex) const {
+        return source.positions[framed.vertices[vertex].corner.position];
+    }
+    const glm::vec3& normal(std::uint32_t vertex) const {
+        return source.normals[framed.vertices[vertex].corner.normal];
+    }
+    /// As the file has it: v = 0 is the top row.
+    glm::vec2 uv(std::uint32_t vertex) const {
+        const glm::vec2& uv = source.uvs[framed.vertices[vertex].corner.uv];
+        return {uv.x, 1.0f - uv.y};
+    }
 };
 
-/// A mesh of at most mesh_format::kMaxMeshVertices vertices, in the order of their first use; its
-/// chunks follow each other and together hold all its indices.
+/// The range of vectors; empty at first.
+template <typename Vector>
+struct Box {
+    Vector low{std::numeric_limits<float>::infinity()};
+    Vector high{-std::numeric_limits<float>::infinity()};
+
+    void add(const Vector& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    void add(const Box& other) {
+        low = glm::min(low, other.low);
+        high = glm::max(high, other.high);
+    }
+};
+
+/// Triangles of one material over at most mesh_format::kMaxMeshVertices vertices, which come in the
+/// order of their first use. The chunks follow each other and together hold all the indices; their
+/// spheres and cones are those of the vertices as the source has them.
 struct ChunkedMesh {
-    FramedMesh mesh;
-    std::vector<Chunk> chunks;
+    std::uint32_t material = 0;
+    std::vector<std::uint32_t> vertices;  ///< in FramedTriangles::vertices
+    std::vector<std::uint16_t> indices;   ///< into `vertices`
+    std::vector<mesh_format::ChunkRecord> chunks;
+    Box<glm::vec3> positions;
+    Box<glm::vec2> uvs;
 };
 
-/// Cuts `mesh` by halving its triangles at the median of their longest side until at most
-/// mesh_format::kMaxChunkTriangles are left, and further by UV where 16 bits would not hold a
-/// chunk's UVs within `budget`; then orders each chunk's triangles for the vertex cache and against
-/// overdraw. Neighbouring chunks share a mesh as long as its vertices and its UVs allow.
-std::vector<ChunkedMesh> make_chunks(const FramedMesh& mesh, const UvBudget& budget);
+/// Cuts the triangles of each material by halving them at the median of their longest side until at
+/// most mesh_format::kMaxChunkTriangles are left, and further by UV where 16 bits would not hold a
+/// chunk's UVs within the material's budget; then orders each chunk's triangles for the vertex
+/// cache. Neighbouring chunks share a mesh as long as its vertices and its UVs allow. The meshes
+/// come in the order of their materials.
+std::vector<ChunkedMesh> make_chunks(const FramedScene& scene, std::span<const UvBudget> budgets);
 
 }  // namespace bake

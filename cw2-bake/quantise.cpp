@@ -19,29 +19,12 @@ namespace {
 using mesh_format::FrameForm;
 using mesh_format::MeshRecord;
 using mesh_format::PositionForm;
-using mesh_format::TangentFrame;
 using mesh_format::UvForm;
 
 /// Points of a 16-bit lattice along one side, less one.
 constexpr double kLatticeSpan = 65'535.0;
 /// Lattice coordinates below this are exact as floats.
 constexpr double kExactIntegers = 16'777'216.0;
-
-struct Box {
-    glm::vec3 low{std::numeric_limits<float>::infinity()};
-    glm::vec3 high{-std::numeric_limits<float>::infinity()};
-
-    void add(const glm::vec3& point) {
-        low = glm::min(low, point);
-        high = glm::max(high, point);
-    }
-};
-
-Box box_of(std::span<const glm::vec3> positions) {
-    Box box;
-    for (const glm::vec3& position : positions) box.add(position);
-    return box;
-}
 
 /// Whether [low, high] has a place on the lattice of this step.
 bool fits(double low, double high, double step) {
@@ -63,79 +46,100 @@ double smallest_step(double coarsest_range, Fits all_fit) {
     return std::ldexp(1.0, exponent);
 }
 
-double position_step(std::span<const Box> boxes) {
+double position_step(std::span<const ChunkedMesh> meshes) {
     double range = 0.0;
-    for (const Box& box : boxes) {
+    for (const ChunkedMesh& mesh : meshes) {
+        const auto& box = mesh.positions;
         for (int axis = 0; axis < 3; ++axis) {
             range = std::max(range, double{box.high[axis]} - double{box.low[axis]});
         }
     }
     return smallest_step(range, [&](double step) {
-        return std::all_of(boxes.begin(), boxes.end(), [step](const Box& box) {
+        return std::ranges::all_of(meshes, [step](const ChunkedMesh& mesh) {
+            const auto& box = mesh.positions;
             return fits(box.low.x, box.high.x, step) && fits(box.low.y, box.high.y, step) &&
                    fits(box.low.z, box.high.z, step);
         });
     });
 }
 
-/// The errors of one mesh, and sums for means over all.
+/// The errors of some vertices, and sums for means over all.
 struct Errors {
     double position = 0.0;
     double frame_sum = 0.0;
     double frame_max = 0.0;
     double uv_texels = 0.0;
+
+    void add(const Errors& other) {
+        position = std::max(position, other.position);
+        frame_sum += other.frame_sum;
+        frame_max = std::max(frame_max, other.frame_max);
+        uv_texels = std::max(uv_texels, other.uv_texels);
+    }
 };
 
-/// Packs one mesh into its part of the vertex section.
+/// Rounds to the nearest whole number, halves up; much faster than std::round.
+std::int32_t nearest(double x) {
+    const auto below = static_cast<std::int32_t>(x);
+    const double rest = x - below;
+    return below + (rest >= 0.5) - (rest < -0.5);
+}
+
+/// Packs the vertices of one mesh.
 class MeshPacker {
  public:
-    MeshPacker(const FramedMesh& mesh, const UvBudget& budget, double step, MeshRecord& record)
-        : mesh_(mesh), step_(step), texels_(budget.texels), record_(record) {
+    MeshPacker(const FramedScene& scene, const ChunkedMesh& mesh, const UvBudget& budget,
+               double step, MeshRecord& record)
+        : scene_(scene), mesh_(mesh), step_(step), texels_(budget.texels), record_(record) {
         if (record.position_form == PositionForm::quantised) choose_position_origin();
         choose_uv_lattice(budget);
+        set_bounds();
     }
 
-    /// Writes all vertices to `out`, and the decoded bounds into the record.
-    Errors pack(std::byte* out) {
+    /// Writes vertices begin .. end - 1 of the mesh to `out`.
+    Errors pack(std::size_t begin, std::size_t end, std::byte* out) const {
         const auto layout =
             mesh_format::vertex_layout(record_.position_form, record_.frame_form, record_.uv_form);
         Errors errors;
-        Box decoded_box;
-        for (std::size_t i = 0; i < mesh_.positions.size(); ++i, out += layout.stride) {
-            const glm::vec3 decoded = pack_position(mesh_.positions[i], out);
-            decoded_box.add(decoded);
-            errors.position =
-                std::max(errors.position,
-                         glm::distance(glm::dvec3(decoded), glm::dvec3(mesh_.positions[i])));
-            const double angle = pack_frame(i, out + layout.frame_offset);
-            errors.frame_sum += angle;
-            errors.frame_max = std::max(errors.frame_max, angle);
-            errors.uv_texels =
-                std::max(errors.uv_texels, pack_uv(mesh_.uvs[i], out + layout.uv_offset));
-        }
-        for (int axis = 0; axis < 3; ++axis) {
-            record_.bounds_min[axis] = decoded_box.low[axis];
-            record_.bounds_max[axis] = decoded_box.high[axis];
+        for (std::size_t i = begin; i < end; ++i, out += layout.stride) {
+            const std::uint32_t vertex = mesh_.vertices[i];
+            const double angle = pack_frame(vertex, out + layout.frame_offset);
+            errors.add({.position = pack_position(scene_.position(vertex), out),
+                        .frame_sum = angle,
+                        .frame_max = angle,
+                        .uv_texels = pack_uv(scene_.uv(vertex), out + layout.uv_offset)});
         }
         return errors;
     }
 
  private:
     void choose_position_origin() {
-        const Box box = box_of(mesh_.positions);
+        for (int axis = 0; axis < 3; ++axis)
+            record_.origin[axis] = lattice(mesh_.positions.low, axis);
+    }
+
+    std::int32_t lattice(const glm::vec3& position, int axis) const {
+        return nearest(double{position[axis]} / step_);
+    }
+
+    /// By the arithmetic of shaders/mesh.vert.
+    float decoded(std::int32_t lattice) const {
+        return static_cast<float>(lattice) * static_cast<float>(step_);
+    }
+
+    /// Of the decoded positions: rounding keeps their order.
+    void set_bounds() {
+        const bool exact = record_.position_form == PositionForm::f32;
+        const auto& [low, high] = mesh_.positions;
         for (int axis = 0; axis < 3; ++axis) {
-            record_.origin[axis] =
-                static_cast<std::int32_t>(std::round(double{box.low[axis]} / step_));
+            record_.bounds_min[axis] = exact ? low[axis] : decoded(lattice(low, axis));
+            record_.bounds_max[axis] = exact ? high[axis] : decoded(lattice(high, axis));
         }
     }
 
     void choose_uv_lattice(const UvBudget& budget) {
-        glm::dvec2 low(std::numeric_limits<double>::infinity());
-        glm::dvec2 high = -low;
-        for (const glm::vec2& uv : mesh_.uvs) {
-            low = glm::min(low, glm::dvec2(uv));
-            high = glm::max(high, glm::dvec2(uv));
-        }
+        const glm::dvec2 low(mesh_.uvs.low);
+        const glm::dvec2 high(mesh_.uvs.high);
         if (budget.shiftable) uv_shift_ = glm::floor(low);
         for (int axis = 0; axis < 2; ++axis) {
             const double first = low[axis] - uv_shift_[axis];
@@ -155,34 +159,29 @@ class MeshPacker {
         }
     }
 
-    /// Returns the decoded position, by the arithmetic of shaders/mesh.vert.
-    glm::vec3 pack_position(const glm::vec3& position, std::byte* out) const {
+    /// Returns the distance to the decoded position.
+    double pack_position(const glm::vec3& position, std::byte* out) const {
         if (record_.position_form == PositionForm::f32) {
             std::memcpy(out, &position, sizeof position);
-            return position;
+            return 0.0;
         }
-        glm::vec3 decoded;
+        double square = 0.0;
         for (int axis = 0; axis < 3; ++axis) {
-            const auto lattice =
-                static_cast<std::int32_t>(std::round(double{position[axis]} / step_));
-            const auto word = static_cast<std::uint16_t>(lattice - record_.origin[axis]);
+            const std::int32_t point = lattice(position, axis);
+            const auto word = static_cast<std::uint16_t>(point - record_.origin[axis]);
             std::memcpy(out + 2 * axis, &word, sizeof word);
-            decoded[axis] = static_cast<float>(lattice) * static_cast<float>(step_);
+            const double error = double{decoded(point)} - position[axis];
+            square += error * error;
         }
-        return decoded;
+        return std::sqrt(square);
     }
 
     /// Returns the angle between the true and the decoded frame, degrees.
-    double pack_frame(std::size_t i, std::byte* out) const {
-        const glm::vec3& n = mesh_.normals[i];
-        const glm::vec4& t = mesh_.tangents[i];
-        const TangentFrame frame{{t.x, t.y, t.z}, {n.x, n.y, n.z}, t.w};
-        mesh_format::pack_frame(record_.frame_form, frame, out);
-        // A tangent need not be orthogonal to its normal yet; in f32 it is made so and no more.
-        std::byte exact[mesh_format::frame_bytes(FrameForm::f32)];
-        mesh_format::pack_frame(FrameForm::f32, frame, exact);
-        return mesh_format::frame_angle(mesh_format::unpack_frame(FrameForm::f32, exact),
-                                        mesh_format::unpack_frame(record_.frame_form, out));
+    double pack_frame(std::uint32_t vertex, std::byte* out) const {
+        const glm::vec3& n = scene_.normal(vertex);
+        const glm::vec4& t = scene_.framed.vertices[vertex].tangent;
+        return mesh_format::pack_frame(record_.frame_form, {{t.x, t.y, t.z}, {n.x, n.y, n.z}, t.w},
+                                       out);
     }
 
     /// Returns the error in texels.
@@ -196,45 +195,23 @@ class MeshPacker {
             const double shifted = double{uv[axis]} - uv_shift_[axis];
             const double origin = record_.uv_origin[axis];
             const double step = record_.uv_step[axis];
-            const double lattice =
-                std::clamp(std::round((shifted - origin) / step), 0.0, kLatticeSpan);
-            const auto word = static_cast<std::uint16_t>(lattice);
+            const double point = std::clamp((shifted - origin) / step, 0.0, kLatticeSpan);
+            const auto word = static_cast<std::uint16_t>(nearest(point));
             std::memcpy(out + 2 * axis, &word, sizeof word);
-            error = std::max(error, std::abs(origin + lattice * step - shifted) * texels_);
+            error = std::max(error, std::abs(origin + word * step - shifted) * texels_);
         }
         return error;
     }
 
-    const FramedMesh& mesh_;
+    const FramedScene& scene_;
+    const ChunkedMesh& mesh_;
     double step_;
     double texels_;
     glm::dvec2 uv_shift_{0.0};
     MeshRecord& record_;
 };
 
-/// Fills in the mesh's part of the chunk section. `position_error` is how far a decoded position
-/// may lie from its source.
-void bound_chunks(const ChunkedMesh& chunked, double position_error,
-                  std::span<mesh_format::ChunkRecord> records) {
-    const FramedMesh& mesh = chunked.mesh;
-    for (std::size_t i = 0; i < chunked.chunks.size(); ++i) {
-        const Chunk& chunk = chunked.chunks[i];
-        const meshopt_Bounds bounds = meshopt_computeClusterBounds(
-            mesh.indices.data() + chunk.first_index, chunk.index_count, &mesh.positions.front().x,
-            mesh.positions.size(), sizeof(glm::vec3));
-        mesh_format::ChunkRecord& record = records[i];
-        record.first_index = chunk.first_index;
-        record.index_count = chunk.index_count;
-        for (int axis = 0; axis < 3; ++axis) {
-            record.center[axis] = bounds.center[axis];
-            record.cone_axis[axis] = bounds.cone_axis[axis];
-        }
-        record.radius = bounds.radius + static_cast<float>(position_error);
-        record.cone_cutoff = bounds.cone_cutoff;
-    }
-}
-
-/// Where the parts of each mesh lie in the sections.
+/// Where the parts of each mesh lie in the sections. Returns the bytes of all vertices.
 std::size_t lay_out(std::span<const ChunkedMesh> meshes, std::vector<MeshRecord>& records) {
     std::size_t vertex_bytes = 0;
     std::uint64_t index_count = 0;
@@ -255,28 +232,63 @@ std::size_t lay_out(std::span<const ChunkedMesh> meshes, std::vector<MeshRecord>
     return vertex_bytes;
 }
 
-/// Fills in what follows from all meshes together.
-void finish_scene(PackedGeometry& geometry, std::span<const ChunkedMesh> meshes,
-                  std::span<const Errors> errors) {
-    Box box;
-    for (const MeshRecord& record : geometry.meshes) {
-        box.add({record.bounds_min[0], record.bounds_min[1], record.bounds_min[2]});
-        box.add({record.bounds_max[0], record.bounds_max[1], record.bounds_max[2]});
+/// Vertices of one mesh that one task packs.
+struct PackBlock {
+    std::size_t mesh, begin, end;
+    Errors errors{};
+    double square_radius = 0.0;  ///< the largest square distance from the scene's centre
+};
+
+std::vector<PackBlock> make_blocks(std::span<const ChunkedMesh> meshes) {
+    constexpr std::size_t kVerticesPerBlock = 4096;
+    std::vector<PackBlock> blocks;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const std::size_t count = meshes[i].vertices.size();
+        for (std::size_t begin = 0; begin < count; begin += kVerticesPerBlock)
+            blocks.push_back({i, begin, std::min(begin + kVerticesPerBlock, count)});
     }
-    const glm::dvec3 center = 0.5 * (glm::dvec3(box.low) + glm::dvec3(box.high));
+    return blocks;
+}
+
+double largest_square_distance(const FramedScene& scene, std::span<const std::uint32_t> vertices,
+                               const glm::dvec3& center) {
+    double largest = 0.0;
+    for (const std::uint32_t vertex : vertices) {
+        const glm::dvec3 arm = glm::dvec3(scene.position(vertex)) - center;
+        largest = std::max(largest, glm::dot(arm, arm));
+    }
+    return largest;
+}
+
+/// Appends the mesh's part of the sections that are no vertices. `position_error` is how far a
+/// decoded position may lie from its source.
+void append_chunks(const ChunkedMesh& mesh, double position_error, PackedGeometry& geometry) {
+    for (mesh_format::ChunkRecord chunk : mesh.chunks) {
+        chunk.radius += static_cast<float>(position_error);
+        geometry.chunks.push_back(chunk);
+    }
+    geometry.indices.insert(geometry.indices.end(), mesh.indices.begin(), mesh.indices.end());
+}
+
+Box<glm::vec3> decoded_box(std::span<const MeshRecord> records) {
+    Box<glm::vec3> box;
+    for (const MeshRecord& record : records) {
+        box.add(glm::vec3(record.bounds_min[0], record.bounds_min[1], record.bounds_min[2]));
+        box.add(glm::vec3(record.bounds_max[0], record.bounds_max[1], record.bounds_max[2]));
+    }
+    return box;
+}
+
+/// Fills in what follows from all meshes together.
+void finish_scene(PackedGeometry& geometry, const Box<glm::vec3>& box,
+                  std::span<const PackBlock> blocks) {
+    Errors all;
     double square_radius = 0.0;
     double vertices = 0.0;
-    Errors all;
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        for (const glm::vec3& position : meshes[i].mesh.positions) {
-            const glm::dvec3 arm = glm::dvec3(position) - center;
-            square_radius = std::max(square_radius, glm::dot(arm, arm));
-        }
-        vertices += static_cast<double>(meshes[i].mesh.positions.size());
-        all.position = std::max(all.position, errors[i].position);
-        all.frame_sum += errors[i].frame_sum;
-        all.frame_max = std::max(all.frame_max, errors[i].frame_max);
-        all.uv_texels = std::max(all.uv_texels, errors[i].uv_texels);
+    for (const PackBlock& block : blocks) {
+        all.add(block.errors);
+        square_radius = std::max(square_radius, block.square_radius);
+        vertices += static_cast<double>(block.end - block.begin);
     }
     for (int axis = 0; axis < 3; ++axis) {
         geometry.scene.bounds_min[axis] = box.low[axis];
@@ -294,45 +306,50 @@ void finish_scene(PackedGeometry& geometry, std::span<const ChunkedMesh> meshes,
 
 }  // namespace
 
-PackedGeometry quantise(std::span<const ChunkedMesh> meshes, std::span<const UvBudget> materials,
-                        const QuantiseSettings& settings) {
+PackedGeometry quantise(const FramedScene& scene, std::span<const ChunkedMesh> meshes,
+                        std::span<const UvBudget> materials, const QuantiseSettings& settings) {
     PackedGeometry geometry;
-    double step = 0.0;
-    if (settings.position_form == PositionForm::quantised) {
-        std::vector<Box> boxes;
-        for (const ChunkedMesh& chunked : meshes) boxes.push_back(box_of(chunked.mesh.positions));
-        step = position_step(boxes);
-    }
+    const bool exact = settings.position_form == PositionForm::f32;
+    const double step = exact ? 0.0 : position_step(meshes);
     geometry.scene.position_step = static_cast<float>(step);
 
     std::vector<MeshPacker> packers;
     geometry.meshes.resize(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         MeshRecord& record = geometry.meshes[i];
-        record.material = meshes[i].mesh.material;
+        record.material = meshes[i].material;
         record.position_form = settings.position_form;
         record.frame_form = settings.frame_form;
-        record.uv_form =
-            settings.position_form == PositionForm::f32 ? UvForm::f32 : UvForm::quantised;
-        record.vertex_count = static_cast<std::uint32_t>(meshes[i].mesh.positions.size());
-        record.index_count = static_cast<std::uint32_t>(meshes[i].mesh.indices.size());
-        packers.emplace_back(meshes[i].mesh, materials[meshes[i].mesh.material], step, record);
+        record.uv_form = exact ? UvForm::f32 : UvForm::quantised;
+        record.vertex_count = static_cast<std::uint32_t>(meshes[i].vertices.size());
+        record.index_count = static_cast<std::uint32_t>(meshes[i].indices.size());
+        packers.emplace_back(scene, meshes[i], materials[meshes[i].material], step, record);
     }
     geometry.vertices.resize(lay_out(meshes, geometry.meshes));
-    geometry.chunks.resize(geometry.meshes.back().first_chunk + geometry.meshes.back().chunk_count);
     geometry.indices.reserve(geometry.meshes.back().first_index +
                              geometry.meshes.back().index_count);
-    for (const ChunkedMesh& chunked : meshes) {
-        geometry.indices.insert(geometry.indices.end(), chunked.mesh.indices.begin(),
-                                chunked.mesh.indices.end());
-    }
-    std::vector<Errors> errors(meshes.size());
-    tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
-        errors[i] = packers[i].pack(geometry.vertices.data() + geometry.meshes[i].vertex_offset);
-        bound_chunks(meshes[i], errors[i].position,
-                     std::span(geometry.chunks).subspan(geometry.meshes[i].first_chunk));
+
+    const Box<glm::vec3> box = decoded_box(geometry.meshes);
+    const glm::dvec3 center = 0.5 * (glm::dvec3(box.low) + glm::dvec3(box.high));
+    std::vector<PackBlock> blocks = make_blocks(meshes);
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+        PackBlock& block = blocks[i];
+        const MeshRecord& record = geometry.meshes[block.mesh];
+        const auto stride =
+            mesh_format::vertex_layout(record.position_form, record.frame_form, record.uv_form)
+                .stride;
+        block.errors = packers[block.mesh].pack(
+            block.begin, block.end,
+            geometry.vertices.data() + record.vertex_offset + block.begin * stride);
+        block.square_radius = largest_square_distance(
+            scene,
+            std::span(meshes[block.mesh].vertices).subspan(block.begin, block.end - block.begin),
+            center);
     });
-    finish_scene(geometry, meshes, errors);
+    finish_scene(geometry, box, blocks);
+    for (const ChunkedMesh& mesh : meshes)
+        append_chunks(mesh, geometry.scene.position_error, geometry);
+    geometry.scene.index_count = geometry.indices.size();
     return geometry;
 }
 

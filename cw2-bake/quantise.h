@@ -25,13 +25,12 @@ struct PackedGeometry {
     std::vector<std::uint16_t> indices;
 };
 
-/// Packs `meshes`, which together are the scene; at most kMaxMeshVertices vertices each.
-/// `materials` has an entry for each material.
+/// Packs `meshes`, which together are the scene. `materials` has an entry for each material.
 ///
 /// Positions go to one lattice of a power-of-two step, the finest on which every mesh spans at
 /// most 65,536 points and every coordinate stays below 2^24 steps from the origin. UVs go to a
 /// lattice for each mesh; where half its step exceeds 1/8 texel the mesh keeps float UVs.
-PackedGeometry quantise(std::span<const ChunkedMesh> meshes, std::span<const UvBudget> materials,
-                        const QuantiseSettings& settings);
+PackedGeometry quantise(const FramedScene& scene, std::span<const ChunkedMesh> meshes,
+                        std::span<const UvBudget> materials, const QuantiseSettings& settings);
 
 }  // namespace bake

@@ -14,8 +14,25 @@ namespace {
 // What gltfpack and others measure with.
 constexpr unsigned kCacheSize = 16;
 
+/// A mesh of its own, as meshoptimizer takes it.
+struct PlainMesh {
+    std::vector<std::uint32_t> indices;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec2> uvs;
+};
+
+PlainMesh plain(const FramedScene& scene, const ChunkedMesh& mesh) {
+    PlainMesh result;
+    result.indices.assign(mesh.indices.begin(), mesh.indices.end());
+    for (const std::uint32_t vertex : mesh.vertices) {
+        result.positions.push_back(scene.position(vertex));
+        result.uvs.push_back(scene.uv(vertex));
+    }
+    return result;
+}
+
 /// Vertices none of whose triangles spans area in UV.
-std::uint64_t count_degenerate(const FramedMesh& mesh) {
+std::uint64_t count_degenerate(const PlainMesh& mesh) {
     std::vector<bool> spans(mesh.positions.size());
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         const glm::vec2& a = mesh.uvs[mesh.indices[i]];
@@ -35,18 +52,18 @@ void StageClock::end(std::string_view stage) {
     start_ = now;
 }
 
-MeshStats measure(std::span<const ChunkedMesh> meshes) {
+MeshStats measure(const FramedScene& scene, std::span<const ChunkedMesh> meshes) {
     MeshStats stats;
     double transformed = 0.0;
     double covered = 0.0;
     double shaded = 0.0;
     for (const ChunkedMesh& chunked : meshes) {
-        const FramedMesh& mesh = chunked.mesh;
+        const PlainMesh mesh = plain(scene, chunked);
         stats.vertices += mesh.positions.size();
         stats.triangles += mesh.indices.size() / 3;
-        stats.mirrored += static_cast<std::uint64_t>(
-            std::count_if(mesh.tangents.begin(), mesh.tangents.end(),
-                          [](const glm::vec4& tangent) { return tangent.w < 0.0f; }));
+        stats.mirrored += static_cast<std::uint64_t>(std::ranges::count_if(
+            chunked.vertices,
+            [&](std::uint32_t vertex) { return scene.framed.vertices[vertex].tangent.w < 0.0f; }));
         stats.degenerate += count_degenerate(mesh);
         transformed += meshopt_analyzeVertexCache(mesh.indices.data(), mesh.indices.size(),
                                                   mesh.positions.size(), kCacheSize, 0, 0)

@@ -43,7 +43,7 @@ struct MeshStats {
     double atvr = 0.0;      ///< vertices transformed a vertex (best: 1)
     double overdraw = 0.0;  ///< pixels shaded a pixel covered, over views along the axes
 };
-MeshStats measure(std::span<const ChunkedMesh> meshes);
+MeshStats measure(const FramedScene& scene, std::span<const ChunkedMesh> meshes);
 
 /// What one bake did. Times in milliseconds, memory in bytes.
 struct BakeStats {

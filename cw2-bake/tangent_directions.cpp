@@ -1,6 +1,5 @@
 #include "cw2-bake/tangent_directions.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -16,37 +15,7 @@ namespace {
 using glm::vec2;
 using glm::vec3;
 
-constexpr std::size_t kFacesPerBlock = 4096;
-
-bool not_zero(float x) {
-    return std::abs(x) > FLT_MIN;
-}
-
-FaceDirections make_face(const TangentInput& mesh, const std::uint32_t* corners) {
-    const vec3& p0 = mesh.positions[corners[0]];
-    const vec3& p1 = mesh.positions[corners[1]];
-    const vec3& p2 = mesh.positions[corners[2]];
-    const vec2 uv1 = mesh.uvs[corners[1]] - mesh.uvs[corners[0]];
-    const vec2 uv2 = mesh.uvs[corners[2]] - mesh.uvs[corners[0]];
-    const vec3 edge1 = p1 - p0;
-    const vec3 edge2 = p2 - p0;
-    const float area = uv1.x * uv2.y - uv1.y * uv2.x;
-
-    FaceDirections face{};
-    face.s = uv2.y * edge1 - uv1.y * edge2;
-    face.t = -uv2.x * edge1 + uv1.x * edge2;
-    face.preserving = area > 0.0f;
-    face.degenerate = p0 == p1 || p0 == p2 || p1 == p2;
-    if (not_zero(area)) {
-        const float sign = face.preserving ? 1.0f : -1.0f;
-        const float length_s = std::sqrt(glm::dot(face.s, face.s));
-        const float length_t = std::sqrt(glm::dot(face.t, face.t));
-        if (not_zero(length_s)) face.s = (sign / length_s) * face.s;
-        if (not_zero(length_t)) face.t = (sign / length_t) * face.t;
-        face.usable = not_zero(length_s / std::abs(area)) && not_zero(length_t / std::abs(area));
-    }
-    return face;
-}
+constexpr std::size_t kFacesPerBlock = 8192;
 
 /// (asin(sqrt(z)) / sqrt(z) - 1) / z for z in [0, 1/4], highest power first; Chebyshev fit, off by
 /// less than 1e-12.
@@ -100,17 +69,76 @@ void flatten(Lanes& v, const Lanes& n) {
     }
 }
 
+/// The directions of growing u and v, by face.
+struct FaceLanes {
+    Lanes edge1, edge2;  ///< from corner 0 to corners 1 and 2
+    float u1[kLanes], v1[kLanes], u2[kLanes], v2[kLanes];
+    Lanes s, t;  ///< in unit length, as far as the UVs allow
+    float area[kLanes];
+    float usable[kLanes];  ///< 1 or 0
+
+    void load(std::size_t i, const SourceScene& scene, const Corner* face) {
+        const vec3& p0 = scene.positions[face[0].position];
+        edge1.set(i, scene.positions[face[1].position] - p0);
+        edge2.set(i, scene.positions[face[2].position] - p0);
+        const vec2& uv0 = scene.uvs[face[0].uv];
+        const vec2 uv1 = scene.uvs[face[1].uv] - uv0;
+        const vec2 uv2 = scene.uvs[face[2].uv] - uv0;
+        u1[i] = uv1.x;
+        v1[i] = uv1.y;
+        u2[i] = uv2.x;
+        v2[i] = uv2.y;
+    }
+
+    void compute() {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            area[i] = u1[i] * v2[i] - v1[i] * u2[i];
+            const float size = std::abs(area[i]);
+            const float sign = area[i] > 0.0f ? 1.0f : -1.0f;
+            const float sx = v2[i] * edge1.x[i] - v1[i] * edge2.x[i];
+            const float sy = v2[i] * edge1.y[i] - v1[i] * edge2.y[i];
+            const float sz = v2[i] * edge1.z[i] - v1[i] * edge2.z[i];
+            const float tx = -u2[i] * edge1.x[i] + u1[i] * edge2.x[i];
+            const float ty = -u2[i] * edge1.y[i] + u1[i] * edge2.y[i];
+            const float tz = -u2[i] * edge1.z[i] + u1[i] * edge2.z[i];
+            const float length_s = std::sqrt(sx * sx + sy * sy + sz * sz);
+            const float length_t = std::sqrt(tx * tx + ty * ty + tz * tz);
+            const bool has_area = size > FLT_MIN;
+            const float scale_s = has_area && length_s > FLT_MIN ? sign / length_s : 1.0f;
+            const float scale_t = has_area && length_t > FLT_MIN ? sign / length_t : 1.0f;
+            s.x[i] = scale_s * sx;
+            s.y[i] = scale_s * sy;
+            s.z[i] = scale_s * sz;
+            t.x[i] = scale_t * tx;
+            t.y[i] = scale_t * ty;
+            t.z[i] = scale_t * tz;
+            const bool spans = has_area && length_s / size > FLT_MIN && length_t / size > FLT_MIN;
+            usable[i] = spans ? 1.0f : 0.0f;
+        }
+    }
+};
+
 struct SpokeBatch {
+    FaceLanes face;
     Lanes normal;
-    Lanes s;
-    Lanes t;
     Lanes to_previous;
     Lanes to_next;
     float angle[kLanes];
 
+    void load(std::size_t i, const SourceScene& scene, std::uint32_t corner) {
+        const Corner* corners = &scene.corners[corner - corner % 3];
+        face.load(i, scene, corners);
+        const std::uint32_t k = corner % 3;
+        const vec3& here = scene.positions[corners[k].position];
+        normal.set(i, scene.normals[corners[k].normal]);
+        to_previous.set(i, scene.positions[corners[k == 0 ? 2 : k - 1].position] - here);
+        to_next.set(i, scene.positions[corners[k == 2 ? 0 : k + 1].position] - here);
+    }
+
     void compute() {
-        flatten(s, normal);
-        flatten(t, normal);
+        face.compute();
+        flatten(face.s, normal);
+        flatten(face.t, normal);
         flatten(to_previous, normal);
         flatten(to_next, normal);
         for (std::size_t i = 0; i < kLanes; ++i) {
@@ -128,38 +156,38 @@ vec3 unit_or_zero(const vec3& v) {
     return squared > 0.0f ? (1.0f / std::sqrt(squared)) * v : v;
 }
 
-std::vector<FaceDirections> make_face_directions(const TangentInput& mesh) {
-    std::vector<FaceDirections> faces(mesh.indices.size() / 3);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), kFacesPerBlock),
-                      [&](const auto& block) {
-                          for (std::size_t f = block.begin(); f < block.end(); ++f)
-                              faces[f] = make_face(mesh, &mesh.indices[3 * f]);
-                      });
-    return faces;
-}
-
-void make_spokes(const TangentInput& mesh, const std::vector<FaceDirections>& faces,
-                 std::span<const std::uint32_t> corners, Spoke* spokes) {
+void make_spokes(const SourceScene& scene, std::span<const std::uint32_t> corners, Spoke* spokes) {
     SpokeBatch batch{};
     for (std::size_t begin = 0; begin < corners.size(); begin += kLanes) {
         const std::size_t count = std::min(kLanes, corners.size() - begin);
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::uint32_t corner = corners[begin + i];
-            const std::uint32_t vertex = mesh.indices[corner];
-            const vec3& here = mesh.positions[vertex];
-            batch.normal.set(i, mesh.normals[vertex]);
-            batch.s.set(i, faces[corner / 3].s);
-            batch.t.set(i, faces[corner / 3].t);
-            batch.to_previous.set(i, mesh.positions[mesh.indices[previous_corner(corner)]] - here);
-            batch.to_next.set(i, mesh.positions[mesh.indices[next_corner(corner)]] - here);
-        }
+        for (std::size_t i = 0; i < count; ++i) batch.load(i, scene, corners[begin + i]);
         batch.compute();
         for (std::size_t i = 0; i < count; ++i) {
-            const FaceDirections& face = faces[corners[begin + i] / 3];
-            spokes[begin + i] = {batch.s.get(i), batch.t.get(i), batch.angle[i], face.preserving,
-                                 face.usable};
+            spokes[begin + i] = {batch.face.s.get(i), batch.face.t.get(i), batch.angle[i],
+                                 batch.face.area[i] > 0.0f, batch.face.usable[i] > 0.0f};
         }
     }
+}
+
+std::vector<std::uint32_t> find_unusable_faces(const SourceScene& scene) {
+    const std::size_t face_count = scene.corners.size() / 3;
+    std::vector<std::vector<std::uint32_t>> found(face_count / kFacesPerBlock + 1);
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t block) {
+        const std::size_t end = std::min(face_count, (block + 1) * kFacesPerBlock);
+        FaceLanes lanes{};
+        for (std::size_t begin = block * kFacesPerBlock; begin < end; begin += kLanes) {
+            const std::size_t count = std::min(kLanes, end - begin);
+            for (std::size_t i = 0; i < count; ++i)
+                lanes.load(i, scene, &scene.corners[3 * (begin + i)]);
+            lanes.compute();
+            for (std::size_t i = 0; i < count; ++i)
+                if (lanes.usable[i] == 0.0f)
+                    found[block].push_back(static_cast<std::uint32_t>(begin + i));
+        }
+    });
+    std::vector<std::uint32_t> faces;
+    for (const auto& part : found) faces.insert(faces.end(), part.begin(), part.end());
+    return faces;
 }
 
 }  // namespace bake

@@ -1,147 +1,155 @@
 #include "cw2-bake/tangent_topology.h"
 
-#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace bake {
 namespace {
 
-constexpr std::uint32_t kVerticesPerBlock = 2048;
+auto as_tuple(const Corner& corner) {
+    return std::tie(corner.position, corner.normal, corner.uv);
+}
 
-class SlotLinker {
- public:
-    SlotLinker(const TangentInput& mesh, CornerSlots& slots) : mesh_(mesh), slots_(slots) {}
-
-    void link(std::uint32_t vertex) {
-        const std::uint32_t begin = slots_.first[vertex];
-        const std::uint32_t end = slots_.first[vertex + 1];
-        leaving_.clear();
-        arriving_.clear();
-        for (std::uint32_t slot = begin; slot < end; ++slot) {
-            const std::uint32_t corner = slots_.corner[slot];
-            leaving_.push_back({mesh_.indices[next_corner(corner)], slot});
-            arriving_.push_back({mesh_.indices[previous_corner(corner)], slot});
-        }
-        if (end - begin <= kFew)
-            link_by_search();
-        else
-            link_by_sorting();
-    }
-
- private:
-    static constexpr std::uint32_t kFew = 24;
-
-    struct Spoke {
-        std::uint32_t vertex;  ///< the edge's other end
-        std::uint32_t slot;
-        auto operator<=>(const Spoke&) const = default;
-    };
-
-    void join(const Spoke& leaving, const Spoke& arriving) {
-        slots_.across_leaving[leaving.slot] = arriving.slot;
-        slots_.across_arriving[arriving.slot] = leaving.slot;
-    }
-
-    void link_by_search() {
-        for (const Spoke& leaving : leaving_) {
-            for (const Spoke& arriving : arriving_) {
-                if (arriving.vertex != leaving.vertex ||
-                    slots_.across_arriving[arriving.slot] != kNoSlot)
-                    continue;
-                join(leaving, arriving);
-                break;
-            }
-        }
-    }
-
-    void link_by_sorting() {
-        std::ranges::sort(leaving_);
-        std::ranges::sort(arriving_);
-        auto leaving = leaving_.begin();
-        auto arriving = arriving_.begin();
-        while (leaving != leaving_.end() && arriving != arriving_.end()) {
-            if (leaving->vertex < arriving->vertex)
-                ++leaving;
-            else if (arriving->vertex < leaving->vertex)
-                ++arriving;
-            else
-                join(*leaving++, *arriving++);
-        }
-    }
-
-    const TangentInput& mesh_;
-    CornerSlots& slots_;
-    std::vector<Spoke> leaving_;
-    std::vector<Spoke> arriving_;
-};
-
-void link_slots(const TangentInput& mesh, CornerSlots& slots) {
-    slots.across_leaving.assign(slots.corner.size(), kNoSlot);
-    slots.across_arriving.assign(slots.corner.size(), kNoSlot);
-    const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, vertices, kVerticesPerBlock),
-                      [&](const auto& block) {
-                          SlotLinker linker(mesh, slots);
-                          for (std::uint32_t v = block.begin(); v < block.end(); ++v)
-                              linker.link(v);
-                      });
+bool equal(const Corner& a, const Corner& b) {
+    return as_tuple(a) == as_tuple(b);
 }
 
 }  // namespace
 
-CornerSlots make_slots(const TangentInput& mesh, const std::vector<FaceDirections>& faces) {
-    CornerSlots slots;
-    slots.first.assign(mesh.positions.size() + 2, 0);
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        if (faces[f].degenerate) continue;
-        for (std::size_t c = 3 * f; c < 3 * f + 3; ++c) ++slots.first[mesh.indices[c] + 2];
-    }
-    for (std::size_t v = 2; v < slots.first.size(); ++v) slots.first[v] += slots.first[v - 1];
-    slots.corner.resize(slots.first.back());
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        if (faces[f].degenerate) continue;
-        // first[v + 1] is where v's next corner goes, and so ends up as where v + 1 begins.
-        for (std::size_t c = 3 * f; c < 3 * f + 3; ++c)
-            slots.corner[slots.first[mesh.indices[c] + 1]++] = static_cast<std::uint32_t>(c);
-    }
-    slots.first.pop_back();
-    link_slots(mesh, slots);
-    return slots;
+/// Each task lists the corners of its own range of positions, and reads all corners to find them:
+/// so the lists are ascending, and no task waits for another's counts but at the one barrier.
+CornerLists list_corners(const SourceScene& scene) {
+    const auto position_count = static_cast<std::uint32_t>(scene.positions.size());
+    const std::size_t tasks =
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    const auto first_position = [&](std::size_t task) {
+        return static_cast<std::uint32_t>(std::uint64_t{position_count} * task / tasks);
+    };
+    const auto for_own_corners = [&](std::size_t task, auto&& visit) {
+        const std::uint32_t begin = first_position(task);
+        const std::uint32_t size = first_position(task + 1) - begin;
+        const auto count = static_cast<std::uint32_t>(scene.corners.size());
+        for (std::uint32_t c = 0; c < count; ++c) {
+            const std::uint32_t position = scene.corners[c].position;
+            if (position - begin < size) visit(position, c);
+        }
+    };
+
+    CornerLists lists;
+    lists.first.resize(position_count + 1);
+    std::vector<std::uint32_t> totals(tasks + 1);
+    // Counts in place of position + 1: where the next position's list starts, within the task's.
+    tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
+        std::uint32_t total = 0;
+        for_own_corners(task, [&](std::uint32_t position, std::uint32_t) {
+            ++lists.first[position + 1];
+            ++total;
+        });
+        totals[task + 1] = total;
+    });
+    for (std::size_t task = 0; task < tasks; ++task) totals[task + 1] += totals[task];
+    lists.corner.resize(scene.corners.size());
+    std::vector<std::uint32_t> next(position_count);
+    tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
+        std::uint32_t start = totals[task];
+        for (std::uint32_t p = first_position(task); p < first_position(task + 1); ++p) {
+            next[p] = start;
+            start += lists.first[p + 1];
+            lists.first[p + 1] = start;
+        }
+        for_own_corners(task, [&](std::uint32_t position, std::uint32_t corner) {
+            lists.corner[next[position]++] = corner;
+        });
+    });
+    return lists;
 }
 
-void settle_windings(const TangentInput& mesh, const CornerSlots& slots,
-                     std::vector<FaceDirections>& faces) {
-    std::vector<std::uint32_t> slot_of_corner(mesh.indices.size(), kNoSlot);
-    for (std::size_t v = 0; v + 1 < slots.first.size(); ++v) {
-        const auto begin = slots.corner.begin() + slots.first[v];
-        const auto end = slots.corner.begin() + slots.first[v + 1];
-        if (std::all_of(begin, end, [&](std::uint32_t corner) { return faces[corner / 3].usable; }))
-            continue;
-        for (std::uint32_t slot = slots.first[v]; slot < slots.first[v + 1]; ++slot)
-            slot_of_corner[slots.corner[slot]] = slot;
-    }
+void CornerSlots::clear() {
+    vertices.clear();
+    corner.clear();
+    across_leaving.clear();
+    across_arriving.clear();
+}
 
-    std::vector<bool> grouped(slots.corner.size(), false);
-    std::vector<bool> settled(faces.size());
-    for (std::size_t f = 0; f < faces.size(); ++f) settled[f] = faces[f].usable;
-    for (std::size_t corner = 0; corner < slot_of_corner.size(); ++corner) {
-        const std::uint32_t start = slot_of_corner[corner];
-        if (start == kNoSlot || grouped[start] || !faces[corner / 3].usable) continue;
-        const bool preserving = faces[corner / 3].preserving;
-        grouped[start] = true;
-        walk_around(slots, start, [&](std::uint32_t slot) {
-            const std::uint32_t f = slots.corner[slot] / 3;
-            if (grouped[slot]) return false;
-            if (!settled[f]) {
-                settled[f] = true;
-                faces[f].preserving = preserving;
-            }
-            const bool joins = faces[f].preserving == preserving;
-            grouped[slot] = joins;
-            return joins;
-        });
+void SlotMaker::make_keys(std::span<const std::uint32_t> corners) {
+    keys_.clear();
+    bool sorted = true;
+    for (const std::uint32_t c : corners) {
+        const Corner* face = &scene_.corners[c - c % 3];
+        const bool degenerate = face[0].position == face[1].position ||
+                                face[0].position == face[2].position ||
+                                face[1].position == face[2].position;
+        const Corner& own = scene_.corners[c];
+        keys_.push_back({own.normal, own.uv, scene_.triangle_material[c / 3], degenerate, c});
+        sorted &= keys_.size() == 1 || keys_[keys_.size() - 2] < keys_.back();
+    }
+    if (!sorted) std::sort(keys_.begin(), keys_.end());
+}
+
+void SlotMaker::add(std::span<const std::uint32_t> corners) {
+    make_keys(corners);
+    for (std::size_t i = 0; i < keys_.size();) {
+        const Key& key = keys_[i];
+        VertexSlots vertex{.first = static_cast<std::uint32_t>(slots_.corner.size())};
+        for (; i < keys_.size() && keys_[i].same_vertex(key) && !keys_[i].degenerate; ++i)
+            slots_.corner.push_back(keys_[i].corner);
+        vertex.degenerate = static_cast<std::uint32_t>(slots_.corner.size());
+        for (; i < keys_.size() && keys_[i].same_vertex(key); ++i)
+            slots_.corner.push_back(keys_[i].corner);
+        vertex.end = static_cast<std::uint32_t>(slots_.corner.size());
+        slots_.vertices.push_back(vertex);
+        slots_.across_leaving.resize(vertex.end, kNoSlot);
+        slots_.across_arriving.resize(vertex.end, kNoSlot);
+        link(vertex);
+    }
+}
+
+void SlotMaker::link(const VertexSlots& vertex) {
+    constexpr std::uint32_t kFew = 24;
+    leaving_.clear();
+    arriving_.clear();
+    for (std::uint32_t slot = vertex.first; slot < vertex.degenerate; ++slot) {
+        const std::uint32_t corner = slots_.corner[slot];
+        leaving_.push_back({scene_.corners[next_corner(corner)], slot});
+        arriving_.push_back({scene_.corners[previous_corner(corner)], slot});
+    }
+    if (leaving_.size() <= kFew)
+        link_by_search();
+    else
+        link_by_sorting();
+}
+
+void SlotMaker::link_by_search() {
+    for (const Spoke& leaving : leaving_) {
+        for (const Spoke& arriving : arriving_) {
+            if (!equal(arriving.end, leaving.end) ||
+                slots_.across_arriving[arriving.slot] != kNoSlot)
+                continue;
+            join(leaving, arriving);
+            break;
+        }
+    }
+}
+
+void SlotMaker::link_by_sorting() {
+    const auto before = [](const Spoke& a, const Spoke& b) {
+        return std::tuple_cat(as_tuple(a.end), std::tie(a.slot)) <
+               std::tuple_cat(as_tuple(b.end), std::tie(b.slot));
+    };
+    std::sort(leaving_.begin(), leaving_.end(), before);
+    std::sort(arriving_.begin(), arriving_.end(), before);
+    auto leaving = leaving_.begin();
+    auto arriving = arriving_.begin();
+    while (leaving != leaving_.end() && arriving != arriving_.end()) {
+        if (as_tuple(leaving->end) < as_tuple(arriving->end))
+            ++leaving;
+        else if (as_tuple(arriving->end) < as_tuple(leaving->end))
+            ++arriving;
+        else
+            join(*leaving++, *arriving++);
     }
 }
 

@@ -1,26 +1,26 @@
 #include "cw2-bake/tangents.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "cw2-bake/tangent_directions.h"
 #include "cw2-bake/tangent_topology.h"
+#include "cw2-bake/windings.h"
 
 namespace bake {
 namespace {
 
-using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 constexpr vec4 kUnreached{1.0f, 0.0f, 0.0f, -1.0f};
-constexpr std::uint32_t kVerticesPerBlock = 512;
+constexpr std::uint32_t kPositionsPerBlock = 512;
 
 bool is_unit(const vec3& v) {
     return std::abs(glm::dot(v, v) - 1.0f) < 1e-3f;
@@ -32,21 +32,23 @@ bool close(const vec3& a, const vec3& b) {
     return glm::dot(a, b) > 0.01f;
 }
 
-/// Makes the tangents of the corners at the vertices of one block.
-class BlockTangents {
+/// Makes the tangents of the corners at some vertices; reused from block to block by one thread.
+class SlotTangents {
  public:
-    BlockTangents(const CornerSlots& slots, std::vector<vec4>& tangents)
-        : slots_(slots), tangents_(tangents) {}
+    SlotTangents(const SourceScene& scene, const Windings& windings)
+        : scene_(scene), windings_(windings) {}
 
-    void make(const TangentInput& mesh, const std::vector<FaceDirections>& faces,
-              std::uint32_t begin_vertex, std::uint32_t end_vertex) {
-        block_ = slots_.first[begin_vertex];
-        const std::uint32_t count = slots_.first[end_vertex] - block_;
+    /// The tangent of the corner of each slot; valid until the next call.
+    std::span<const vec4> make(const CornerSlots& slots) {
+        const std::size_t count = slots.corner.size();
         spokes_.resize(count);
         group_.assign(count, kNone);
-        make_spokes(mesh, faces, std::span(slots_.corner).subspan(block_, count), spokes_.data());
-        for (std::uint32_t v = begin_vertex; v < end_vertex; ++v)
-            make_vertex(slots_.first[v], slots_.first[v + 1]);
+        tangents_.assign(count, kUnreached);
+        make_spokes(scene_, slots.corner, spokes_.data());
+        windings_.settle(slots.corner, spokes_);
+        for (const VertexSlots& vertex : slots.vertices) make_vertex(slots, vertex);
+        if (!scene_.tangents.empty()) take_given(slots);
+        return tangents_;
     }
 
  private:
@@ -57,29 +59,37 @@ class BlockTangents {
         vec4 tangent{0.0f};
     };
 
-    const Spoke& spoke(std::uint32_t slot) const { return spokes_[slot - block_]; }
-    std::uint32_t& group(std::uint32_t slot) { return group_[slot - block_]; }
+    void take_given(const CornerSlots& slots) {
+        for (std::size_t slot = 0; slot < slots.corner.size(); ++slot) {
+            const vec4& given = scene_.tangents[slots.corner[slot]];
+            if (given.w != 0.0f) tangents_[slot] = given;
+        }
+    }
 
-    void make_vertex(std::uint32_t begin, std::uint32_t end) {
-        find_groups(begin, end);
+    void make_vertex(const CornerSlots& slots, const VertexSlots& vertex) {
+        const std::uint32_t begin = vertex.first;
+        const std::uint32_t end = vertex.degenerate;
+        find_groups(slots, begin, end);
         sum_groups(begin, end);
         for (std::uint32_t slot = begin; slot < end; ++slot)
-            if (group(slot) != kNone) tangents_[slots_.corner[slot]] = groups_[group(slot)].tangent;
+            if (group_[slot] != kNone) tangents_[slot] = groups_[group_[slot]].tangent;
         exclude_opposites(begin, end);
+        // A degenerate face takes what the first other one at the vertex has.
+        if (begin < end) std::fill_n(&tangents_[end], vertex.end - end, tangents_[begin]);
     }
 
     /// The faces of one winding that hang together across the edges at the vertex.
-    void find_groups(std::uint32_t begin, std::uint32_t end) {
+    void find_groups(const CornerSlots& slots, std::uint32_t begin, std::uint32_t end) {
         groups_.clear();
         for (std::uint32_t start = begin; start < end; ++start) {
-            if (group(start) != kNone || !spoke(start).usable) continue;
+            if (group_[start] != kNone || !spokes_[start].usable) continue;
             const auto index = static_cast<std::uint32_t>(groups_.size());
-            const bool preserving = spoke(start).preserving;
+            const bool preserving = spokes_[start].preserving;
             groups_.push_back({.first = start});
-            group(start) = index;
-            walk_around(slots_, start, [&](std::uint32_t slot) {
-                if (group(slot) != kNone || spoke(slot).preserving != preserving) return false;
-                group(slot) = index;
+            group_[start] = index;
+            walk_around(slots, start, [&](std::uint32_t slot) {
+                if (group_[slot] != kNone || spokes_[slot].preserving != preserving) return false;
+                group_[slot] = index;
                 return true;
             });
         }
@@ -87,13 +97,15 @@ class BlockTangents {
 
     void sum_groups(std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t slot = begin; slot < end; ++slot) {
-            if (!spoke(slot).usable) continue;
-            Group& g = groups_[group(slot)];
-            g.wide |= slot != g.first && !(close(spoke(g.first).s, spoke(slot).s) &&
-                                           close(spoke(g.first).t, spoke(slot).t));
-            g.sum += spoke(slot).angle * spoke(slot).s;
+            const Spoke& spoke = spokes_[slot];
+            if (!spoke.usable) continue;
+            Group& group = groups_[group_[slot]];
+            const Spoke& first = spokes_[group.first];
+            group.wide |=
+                slot != group.first && !(close(first.s, spoke.s) && close(first.t, spoke.t));
+            group.sum += spoke.angle * spoke.s;
         }
-        for (Group& g : groups_) g.tangent = tangent(g.sum, g.first);
+        for (Group& group : groups_) group.tangent = tangent(group.sum, group.first);
     }
 
     /// At MikkTSpace's threshold of 180 degrees a face leaves out of its own sum those faces of
@@ -103,72 +115,111 @@ class BlockTangents {
             if (!groups_[index].wide) continue;
             members_.clear();
             for (std::uint32_t slot = begin; slot < end; ++slot)
-                if (group(slot) == index && spoke(slot).usable) members_.push_back(slot);
+                if (group_[slot] == index && spokes_[slot].usable) members_.push_back(slot);
             for (const std::uint32_t slot : members_) exclude_opposites_of(slot);
         }
     }
 
     void exclude_opposites_of(std::uint32_t slot) {
-        const Spoke& own = spoke(slot);
+        const Spoke& own = spokes_[slot];
         bool whole = true;
         vec3 sum{0.0f};
         for (const std::uint32_t other : members_) {
-            const Spoke& its = spoke(other);
+            const Spoke& its = spokes_[other];
             if (other == slot || (glm::dot(own.s, its.s) > -1.0f && glm::dot(own.t, its.t) > -1.0f))
                 sum += its.angle * its.s;
             else
                 whole = false;
         }
-        if (!whole) tangents_[slots_.corner[slot]] = tangent(sum, slot);
+        if (!whole) tangents_[slot] = tangent(sum, slot);
     }
 
     /// Where a sum has no direction MikkTSpace answers a zero vector or worse; here that of `slot`,
     /// one of those summed, stands in.
     vec4 tangent(const vec3& sum, std::uint32_t slot) const {
         vec3 unit = unit_or_zero(sum);
-        if (!is_unit(unit)) unit = spoke(slot).s;
+        if (!is_unit(unit)) unit = spokes_[slot].s;
         if (!is_unit(unit)) unit = vec3(kUnreached);
-        return {unit, spoke(slot).preserving ? 1.0f : -1.0f};
+        return {unit, spokes_[slot].preserving ? 1.0f : -1.0f};
     }
 
-    const CornerSlots& slots_;
-    std::vector<vec4>& tangents_;
-
-    std::uint32_t block_ = 0;             ///< the block's first slot
-    std::vector<Spoke> spokes_;           ///< of each slot of the block
-    std::vector<std::uint32_t> group_;    ///< of each slot of the block, kNone if none reached it
-    std::vector<Group> groups_;           ///< of one vertex
-    std::vector<std::uint32_t> members_;  ///< the slots of one group that have usable UVs
+    const SourceScene& scene_;
+    const Windings& windings_;
+    // Of each slot:
+    std::vector<Spoke> spokes_;
+    std::vector<std::uint32_t> group_;  // kNone if none reached it
+    std::vector<vec4> tangents_;
+    // Of one vertex:
+    std::vector<Group> groups_;
+    std::vector<std::uint32_t> members_;  // the slots of one group that have usable UVs
 };
+
+/// Appends the framed vertices at the slots' vertices, and tells each corner its own's number.
+void make_vertices(const SourceScene& scene, const CornerSlots& slots,
+                   std::span<const vec4> tangents, std::vector<FramedVertex>& vertices,
+                   std::vector<std::uint32_t>& indices) {
+    for (const VertexSlots& vertex : slots.vertices) {
+        const std::size_t first = vertices.size();
+        for (std::uint32_t slot = vertex.first; slot < vertex.end; ++slot) {
+            const std::uint32_t corner = slots.corner[slot];
+            std::size_t v = first;
+            while (v < vertices.size() && vertices[v].tangent != tangents[slot]) ++v;
+            if (v == vertices.size()) vertices.push_back({scene.corners[corner], tangents[slot]});
+            indices[corner] = static_cast<std::uint32_t>(v);
+        }
+    }
+}
+
+/// One after the other in one array; frees each part once it is copied.
+std::vector<FramedVertex> concatenate(std::vector<std::vector<FramedVertex>>& blocks,
+                                      const std::vector<std::uint32_t>& first) {
+    std::vector<FramedVertex> vertices(first.back());
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
+        std::copy(blocks[i].begin(), blocks[i].end(), vertices.begin() + first[i]);
+        std::vector<FramedVertex>().swap(blocks[i]);
+    });
+    return vertices;
+}
 
 }  // namespace
 
-std::vector<vec4> generate_tangents(std::span<const vec3> positions, std::span<const vec3> normals,
-                                    std::span<const vec2> uvs,
-                                    std::span<const std::uint32_t> indices) {
-    assert(normals.size() == positions.size() && uvs.size() == positions.size());
-    assert(indices.size() % 3 == 0);
-    const TangentInput mesh{positions, normals, uvs, indices};
-    std::vector<FaceDirections> faces = make_face_directions(mesh);
-    const CornerSlots slots = make_slots(mesh, faces);
-    if (!std::ranges::all_of(faces, &FaceDirections::usable)) settle_windings(mesh, slots, faces);
+FramedTriangles add_tangents(const SourceScene& scene) {
+    FramedTriangles result;
+    const CornerLists lists = list_corners(scene);
+    const Windings windings(scene, lists);
 
-    std::vector<vec4> tangents(indices.size(), kUnreached);
-    const auto vertices = static_cast<std::uint32_t>(positions.size());
+    struct Scratch {
+        Scratch(const SourceScene& scene, const Windings& windings)
+            : slot_maker(scene, slots), tangents(scene, windings) {}
+        CornerSlots slots;
+        SlotMaker slot_maker;
+        SlotTangents tangents;
+    };
+    tbb::enumerable_thread_specific<Scratch> scratches(std::cref(scene), std::cref(windings));
+    const auto position_count = static_cast<std::uint32_t>(scene.positions.size());
+    std::vector<std::vector<FramedVertex>> blocks((position_count + kPositionsPerBlock - 1) /
+                                                  kPositionsPerBlock);
+    result.indices.resize(scene.corners.size());
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t block) {
+        Scratch& scratch = scratches.local();
+        scratch.slots.clear();
+        const auto begin = static_cast<std::uint32_t>(block) * kPositionsPerBlock;
+        const std::uint32_t end = std::min(begin + kPositionsPerBlock, position_count);
+        for (std::uint32_t p = begin; p < end; ++p) scratch.slot_maker.add(lists.at(p));
+        make_vertices(scene, scratch.slots, scratch.tangents.make(scratch.slots), blocks[block],
+                      result.indices);
+    });
+
+    std::vector<std::uint32_t> first{0};
+    for (const auto& block : blocks)
+        first.push_back(first.back() + static_cast<std::uint32_t>(block.size()));
     tbb::parallel_for(
-        tbb::blocked_range<std::uint32_t>(0, vertices, kVerticesPerBlock),
-        [&](const auto& block) {
-            BlockTangents(slots, tangents).make(mesh, faces, block.begin(), block.end());
-        },
-        tbb::simple_partitioner());
-
-    for (std::size_t corner = 0; corner < indices.size(); ++corner) {
-        if (!faces[corner / 3].degenerate) continue;
-        const std::uint32_t slot = slots.first[indices[corner]];
-        if (slot < slots.first[indices[corner] + 1])
-            tangents[corner] = tangents[slots.corner[slot]];
-    }
-    return tangents;
+        tbb::blocked_range<std::size_t>(0, scene.corners.size(), 1 << 14), [&](const auto& range) {
+            for (std::size_t c = range.begin(); c < range.end(); ++c)
+                result.indices[c] += first[scene.corners[c].position / kPositionsPerBlock];
+        });
+    result.vertices = concatenate(blocks, first);
+    return result;
 }
 
 }  // namespace bake

@@ -1,25 +1,32 @@
-// Tangents by MikkTSpace's rules.
+// Tangents by MikkTSpace's rules, and the vertices that result.
 #pragma once
 
 #include <cstdint>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <span>
 #include <vector>
+
+#include "cw2-bake/source_scene.h"
 
 namespace bake {
 
-/// One tangent a corner: xyz of unit length and, where the UVs allow it, orthogonal to the
-/// corner's normal; w = +1 or -1, so that the bitangent is w * cross(normal, tangent), along +v.
+struct FramedVertex {
+    Corner corner;      ///< indices into the scene's attributes
+    glm::vec4 tangent;  ///< see FramedTriangles
+};
+
+/// The triangles of a scene over vertices that have one tangent each.
 ///
-/// The result is MikkTSpace's (Mikkelsen 2008) with its default angular threshold of 180 degrees
-/// for the same triangles, v pointing up. `indices` are triangles over vertices of which no two
-/// have equal position, normal and UV (weld first: two corners are one vertex for MikkTSpace when
-/// those are equal).
-std::vector<glm::vec4> generate_tangents(std::span<const glm::vec3> positions,
-                                         std::span<const glm::vec3> normals,
-                                         std::span<const glm::vec2> uvs,
-                                         std::span<const std::uint32_t> indices);
+/// A tangent's xyz has unit length and, where the UVs allow it, is orthogonal to the vertex's
+/// normal; w = +1 or -1, so that the bitangent is w * cross(normal, tangent), along +v (up).
+struct FramedTriangles {
+    std::vector<FramedVertex> vertices;
+    std::vector<std::uint32_t> indices;  ///< one a corner of the scene
+};
+
+/// Corners share a vertex where they are equal in position, normal, UV, material and tangent. The
+/// tangents are those that the source gives, else those of MikkTSpace (Mikkelsen 2008) with its
+/// default angular threshold of 180 degrees for the triangles of each material by itself. `scene`
+/// is welded (see weld.h).
+FramedTriangles add_tangents(const SourceScene& scene);
 
 }  // namespace bake

@@ -1,30 +1,13 @@
-// Corners to indexed vertices.
+// Equal values to equal indices.
 #pragma once
-
-#include <cstdint>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
-#include <vector>
 
 #include "cw2-bake/source_scene.h"
 
 namespace bake {
 
-/// The triangles of one material. No two vertices are equal in position, normal and UV; they come
-/// in the order of their first use.
-struct WeldedMesh {
-    std::uint32_t material;
-    std::vector<glm::vec3> positions, normals;
-    std::vector<glm::vec2> uvs;
-    std::vector<std::uint32_t> indices;  ///< 3 a triangle, triangles in their source's order
-    /// Those that the source gives, one an index as in SourceScene::tangents; empty if it gives
-    /// none.
-    std::vector<glm::vec4> tangents;
-};
-
-/// One mesh a material that is used, in the order of the materials. Every corner of `scene` has a
-/// normal (see normals.h); a corner with no UV gets (0, 0).
-std::vector<WeldedMesh> weld(const SourceScene& scene);
+/// Makes corners equal in their indices where they are equal in their values: each then refers to
+/// the first position, normal and UV of its value. A corner with no UV gets one of (0, 0), which
+/// joins the scene's. Every corner has a normal (see normals.h); nothing else changes.
+void weld(SourceScene& scene);
 
 }  // namespace bake

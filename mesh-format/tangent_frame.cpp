@@ -147,25 +147,51 @@ float tan_quarter_pi(float x) {
     return x * (1.0f - (1.0f - y) * q);
 }
 
+/// What a digit stands for.
+float ratio_of(std::uint32_t digit, int half, float inverse_half) {
+    return tan_quarter_pi(static_cast<float>(static_cast<int>(digit) - half) * inverse_half);
+}
+
 TangentFrame frame_of_digits(const Digits& digits, int half, float inverse_half,
                              std::uint32_t largest, bool left_handed) {
     float q[4];
     for (unsigned i = 0, k = 0; i < 4; ++i) {
-        if (i == largest) {
-            q[i] = 1.0f;
-        } else {
-            const int level = static_cast<int>(digits[k++]) - half;
-            q[i] = tan_quarter_pi(static_cast<float>(level) * inverse_half);
-        }
+        q[i] = i == largest ? 1.0f : ratio_of(digits[k++], half, inverse_half);
     }
     return frame_of(q[0], q[1], q[2], q[3], left_handed);
 }
 
+/// The angle of the rotation between `rotation` and the one that the digits stand for, degrees.
+double angle_to(const Rotation& rotation, const Digits& digits, int half, float inverse_half) {
+    // With a and b the quaternions, |a|^2 |b|^2 sin^2(angle / 2) = |a|^2 |b|^2 - (a . b)^2, which
+    // is the sum over pairs of components of (a_i b_j - a_j b_i)^2: of small terms only.
+    double a[4];
+    double b[4];
+    a[0] = b[0] = 1;
+    for (unsigned k = 0; k < 3; ++k) {
+        a[k + 1] = rotation.q[k + (k >= rotation.largest)];
+        b[k + 1] = ratio_of(digits[k], half, inverse_half);
+    }
+    double square_a = 0;
+    double square_b = 0;
+    double square_cross = 0;
+    for (int i = 0; i < 4; ++i) {
+        square_a += a[i] * a[i];
+        square_b += b[i] * b[i];
+        for (int j = i + 1; j < 4; ++j) {
+            const double cross = a[i] * b[j] - a[j] * b[i];
+            square_cross += cross * cross;
+        }
+    }
+    // The codes are so close that the series' next term is below 1e-12 of the angle.
+    const double sine = std::sqrt(square_cross / (square_a * square_b));
+    return 2 * (sine + sine * sine * sine / 6) * (180 / std::numbers::pi);
+}
+
 using Words = std::array<std::uint16_t, 3>;
 
-Words pack_quat48(const Rotation& rotation, bool left_handed) {
-    const Digits digits = digits_of(rotation, kQuat48DigitMax / 2);
-    const std::uint32_t flags[3] = {left_handed, rotation.largest & 1, rotation.largest >> 1};
+Words pack_quat48(const Digits& digits, std::uint32_t largest, bool left_handed) {
+    const std::uint32_t flags[3] = {left_handed, largest & 1, largest >> 1};
     Words words{};
     for (int i = 0; i < 3; ++i) {
         words[i] = static_cast<std::uint16_t>(digits[i] | flags[i] << 15);
@@ -183,9 +209,8 @@ TangentFrame unpack_quat48(const Words& words) {
                            words[0] >> 15 != 0);
 }
 
-std::uint32_t pack_quat32(const Rotation& rotation, bool left_handed) {
-    const Digits digits = digits_of(rotation, kQuat32Base / 2);
-    std::uint32_t code = left_handed * 4u + rotation.largest;
+std::uint32_t pack_quat32(const Digits& digits, std::uint32_t largest, bool left_handed) {
+    std::uint32_t code = left_handed * 4u + largest;
     for (int i = 2; i >= 0; --i) code = code * kQuat32Base + digits[i];
     return code;
 }
@@ -337,23 +362,30 @@ void write(const T& value, std::byte* out) {
 
 }  // namespace
 
-void pack_frame(FrameForm form, const TangentFrame& frame, std::byte* out) {
+double pack_frame(FrameForm form, const TangentFrame& frame, std::byte* out) {
     const Rotation rotation = rotation_of(frame);
     const bool left_handed = frame.handedness < 0;
     switch (form) {
-        case FrameForm::quat48:
-            write(pack_quat48(rotation, left_handed), out);
-            break;
-        case FrameForm::quat32:
-            write(pack_quat32(rotation, left_handed), out);
-            break;
-        case FrameForm::half3:
-            write(pack_half3(rotation, left_handed), out);
-            break;
+        case FrameForm::quat48: {
+            const Digits digits = digits_of(rotation, kQuat48DigitMax / 2);
+            write(pack_quat48(digits, rotation.largest, left_handed), out);
+            return angle_to(rotation, digits, kQuat48DigitMax / 2, kQuat48InverseHalf);
+        }
+        case FrameForm::quat32: {
+            const Digits digits = digits_of(rotation, kQuat32Base / 2);
+            write(pack_quat32(digits, rotation.largest, left_handed), out);
+            return angle_to(rotation, digits, kQuat32Base / 2, kQuat32InverseHalf);
+        }
+        case FrameForm::half3: {
+            const Words words = pack_half3(rotation, left_handed);
+            write(words, out);
+            return frame_angle(unpack_f32(pack_f32(rotation, left_handed)), unpack_half3(words));
+        }
         case FrameForm::f32:
-            write(pack_f32(rotation, left_handed), out);
             break;
     }
+    write(pack_f32(rotation, left_handed), out);
+    return 0;
 }
 
 TangentFrame unpack_frame(FrameForm form, const std::byte* in) {

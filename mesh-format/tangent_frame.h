@@ -42,7 +42,9 @@ struct TangentFrame {
 ///              what x, y, z lack to unit length. So are the quarter turns exact: (1, 0, 0, 1)
 ///     f32      x, y, z, w scaled to a largest component of +-1, w >= 0; the sign bit of w =
 ///              left-handed
-void pack_frame(FrameForm form, const TangentFrame& frame, std::byte* out);
+///
+/// Returns the angle of the rotation between `frame` and its code, degrees; 0 for f32.
+double pack_frame(FrameForm form, const TangentFrame& frame, std::byte* out);
 
 /// Reads the frame_bytes(form) bytes at `in`. Any bytes give a finite frame; those that no
 /// pack_frame wrote give an arbitrary one.

@@ -1,39 +1,37 @@
 // bench_tangents OBJ
 //
-// The time of bake::generate_tangents beside that of the npm package `mikktspace`, in turns, on
-// the corners of an OBJ (one mesh a material, see read_obj_by_material). Ours takes welded
-// vertices; welding is part of the package's work and not of ours. Wants `node` and the package,
-// which the tests install.
-#include <tbb/parallel_for.h>
-
+// The time of bake::add_tangents beside that of the npm package `mikktspace`, in turns, on the
+// corners of an OBJ (for the package one mesh a material, see read_obj_by_material). Ours takes
+// welded corners; welding is part of the package's work and not of ours. Wants `node` and the
+// package, which the tests install.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <numeric>
 #include <stdexcept>
 
+#include "cw2-bake/normals.h"
+#include "cw2-bake/read_obj.h"
+#include "cw2-bake/tangents.h"
+#include "cw2-bake/weld.h"
 #include "tests/oracle/corner_mesh.h"
 #include "tests/oracle/package.h"
 
 namespace {
 
-double milliseconds_of_ours(const std::vector<oracle::IndexedMesh>& meshes) {
+double milliseconds_of_ours(const bake::SourceScene& scene) {
     const auto begin = std::chrono::steady_clock::now();
-    // As the bake does: all materials at once.
-    tbb::parallel_for(std::size_t{0}, meshes.size(),
-                      [&](std::size_t i) { oracle::our_tangents(meshes[i]); });
+    bake::add_tangents(scene);
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin)
         .count();
 }
 
 void bench(const char* obj) {
     const std::vector<oracle::CornerMesh> meshes = oracle::read_obj_by_material(obj);
-    std::vector<oracle::IndexedMesh> welded;
-    std::size_t corners = 0;
-    for (const oracle::CornerMesh& mesh : meshes) {
-        welded.push_back(oracle::weld(mesh));
-        corners += mesh.positions.size();
-    }
+    bake::SourceScene scene = bake::read_obj(obj, [](const std::string&) {});
+    bake::generate_normals(scene);
+    bake::weld(scene);
+    const std::size_t corners = scene.corners.size();
     std::printf("%zu corners\n   ours ms   mikktspace ms   ratio\n", corners);
     for (int turn = 0; turn < 5; ++turn) {
         const auto theirs =
@@ -41,7 +39,7 @@ void bench(const char* obj) {
                 .milliseconds;
         const double their_sum = std::accumulate(theirs.begin(), theirs.end(), 0.0);
         std::vector<double> ours(9);
-        for (double& run : ours) run = milliseconds_of_ours(welded);
+        for (double& run : ours) run = milliseconds_of_ours(scene);
         std::ranges::sort(ours);
         std::printf("%10.1f %15.1f %7.4f\n", ours[4], their_sum, ours[4] / their_sum);
     }

@@ -1,66 +1,65 @@
 #include "tests/oracle/corner_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
 #include <random>
-#include <unordered_map>
 
 #include "cw2-bake/normals.h"
 #include "cw2-bake/read_obj.h"
 #include "cw2-bake/tangents.h"
+#include "cw2-bake/weld.h"
 
 namespace oracle {
 namespace {
 
-using Key = std::array<float, 8>;
-
-struct KeyHash {
-    std::size_t operator()(const Key& key) const {
-        std::size_t hash = 0;
-        for (const float x : key) hash = hash * 1'000'003 + std::hash<float>{}(x);
-        return hash;
-    }
-};
+/// Moves the elements to other places, and `index_of(corner)` along with them.
+template <typename Vector, typename IndexOf>
+void shuffle(std::vector<Vector>& values, std::vector<bake::Corner>& corners, IndexOf index_of,
+             std::mt19937& random) {
+    std::vector<std::uint32_t> place(values.size());
+    std::iota(place.begin(), place.end(), 0u);
+    std::shuffle(place.begin(), place.end(), random);
+    const std::vector<Vector> old = values;
+    for (std::size_t i = 0; i < old.size(); ++i) values[place[i]] = old[i];
+    for (bake::Corner& corner : corners) index_of(corner) = place[index_of(corner)];
+}
 
 }  // namespace
 
-IndexedMesh weld(const CornerMesh& mesh) {
-    IndexedMesh welded;
-    std::unordered_map<Key, std::uint32_t, KeyHash> vertex_of;
-    for (std::size_t c = 0; c < mesh.positions.size(); ++c) {
-        const glm::vec3& p = mesh.positions[c];
-        const glm::vec3& n = mesh.normals[c];
-        const glm::vec2& uv = mesh.uvs[c];
-        const auto [found, added] =
-            vertex_of.try_emplace(Key{p.x, p.y, p.z, n.x, n.y, n.z, uv.x, uv.y},
-                                  static_cast<std::uint32_t>(welded.positions.size()));
-        if (added) {
-            welded.positions.push_back(p);
-            welded.normals.push_back(n);
-            welded.uvs.push_back(uv);
-        }
-        welded.indices.push_back(found->second);
+bake::SourceScene welded_scene(const CornerMesh& mesh) {
+    bake::SourceScene scene;
+    for (std::uint32_t c = 0; c < mesh.positions.size(); ++c) {
+        // No -0, as from a reader.
+        scene.positions.push_back(mesh.positions[c] + 0.0f);
+        scene.normals.push_back(mesh.normals[c] + 0.0f);
+        scene.uvs.push_back(mesh.uvs[c] + 0.0f);
+        scene.corners.push_back({c, c, c});
     }
-    return welded;
+    scene.triangle_material.assign(scene.corners.size() / 3, 0);
+    scene.materials.resize(1);
+    bake::weld(scene);
+    return scene;
 }
 
-IndexedMesh renumber(const IndexedMesh& mesh, std::uint32_t seed) {
-    std::vector<std::uint32_t> new_number(mesh.positions.size());
-    std::iota(new_number.begin(), new_number.end(), 0u);
-    std::shuffle(new_number.begin(), new_number.end(), std::mt19937(seed));
-    IndexedMesh renumbered = mesh;
-    for (std::size_t v = 0; v < new_number.size(); ++v) {
-        renumbered.positions[new_number[v]] = mesh.positions[v];
-        renumbered.normals[new_number[v]] = mesh.normals[v];
-        renumbered.uvs[new_number[v]] = mesh.uvs[v];
-    }
-    for (std::uint32_t& index : renumbered.indices) index = new_number[index];
-    return renumbered;
+bake::SourceScene renumber(const bake::SourceScene& scene, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    bake::SourceScene result = scene;
+    using bake::Corner;
+    shuffle(
+        result.positions, result.corners, [](Corner & c) -> auto& { return c.position; }, random);
+    shuffle(
+        result.normals, result.corners, [](Corner & c) -> auto& { return c.normal; }, random);
+    shuffle(
+        result.uvs, result.corners, [](Corner & c) -> auto& { return c.uv; }, random);
+    return result;
 }
 
-std::vector<glm::vec4> our_tangents(const IndexedMesh& mesh) {
-    return bake::generate_tangents(mesh.positions, mesh.normals, mesh.uvs, mesh.indices);
+std::vector<glm::vec4> our_tangents(const bake::SourceScene& scene) {
+    const bake::FramedTriangles framed = bake::add_tangents(scene);
+    std::vector<glm::vec4> tangents;
+    for (const std::uint32_t vertex : framed.indices)
+        tangents.push_back(framed.vertices[vertex].tangent);
+    return tangents;
 }
 
 std::vector<CornerMesh> read_obj_by_material(const std::filesystem::path& path) {

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "cw2-bake/source_scene.h"
+
 namespace oracle {
 
 struct CornerMesh {
@@ -18,21 +20,14 @@ struct CornerMesh {
     std::vector<glm::vec2> uvs;
 };
 
-struct IndexedMesh {
-    std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;
-    std::vector<glm::vec2> uvs;
-    std::vector<std::uint32_t> indices;
-};
+/// The mesh as a scene of one material, welded.
+bake::SourceScene welded_scene(const CornerMesh& mesh);
 
-/// Corners that are equal in every attribute become one vertex.
-IndexedMesh weld(const CornerMesh& mesh);
+/// The same triangles in the same order over attributes in another order.
+bake::SourceScene renumber(const bake::SourceScene& scene, std::uint32_t seed);
 
-/// The same triangles in the same order over vertices in another order.
-IndexedMesh renumber(const IndexedMesh& mesh, std::uint32_t seed);
-
-/// Our tangents of the welded mesh, one a corner.
-std::vector<glm::vec4> our_tangents(const IndexedMesh& mesh);
+/// Our tangents of a welded scene, one a corner.
+std::vector<glm::vec4> our_tangents(const bake::SourceScene& scene);
 
 /// The meshes that are small enough to have recorded results, about 15,000 corners in all.
 std::vector<CornerMesh> small_meshes();

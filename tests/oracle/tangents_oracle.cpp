@@ -1,6 +1,6 @@
 // tangents_oracle compare|record RECORDED WORK_DIR DEMO_OBJ OBJ [NODE SCRIPT PACKAGE_DIR]
 //
-// Compares bake::generate_tangents, corner by corner, with the npm package `mikktspace`: with the
+// Compares bake::add_tangents, corner by corner, with the npm package `mikktspace`: with the
 // package itself (both OBJs, too; OBJ may be missing) where PACKAGE_DIR holds it, else with the
 // results for the small meshes that `record` once wrote to the file RECORDED. Exits 1 if they
 // differ.
@@ -100,7 +100,7 @@ bool same_bits(const Tangents& a, const Tangents& b) {
 }
 
 /// What holds with no oracle. Returns the number of properties that fail.
-int check_properties(const oracle::IndexedMesh& mesh, const Tangents& ours) {
+int check_properties(const bake::SourceScene& scene, const Tangents& ours) {
     int failures = 0;
     const auto expect = [&](bool holds, const char* property) {
         if (!holds) std::printf("    FAILED: %s\n", property);
@@ -112,10 +112,10 @@ int check_properties(const oracle::IndexedMesh& mesh, const Tangents& ours) {
                                           std::abs(t.w) == 1.0f;
                                }),
            "unit length, sign +1 or -1");
-    expect(same_bits(ours, oracle::our_tangents(oracle::renumber(mesh, 99))),
-           "the same bits over vertices in another order");
+    expect(same_bits(ours, oracle::our_tangents(oracle::renumber(scene, 99))),
+           "the same bits over attributes in another order");
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-    expect(same_bits(ours, oracle::our_tangents(mesh)), "the same bits on one thread");
+    expect(same_bits(ours, oracle::our_tangents(scene)), "the same bits on one thread");
     return failures;
 }
 
@@ -123,11 +123,11 @@ int check_properties(const oracle::IndexedMesh& mesh, const Tangents& ours) {
 /// oracle's tangents, or on the other side. Left out are corners whose oracle tangent is not
 /// orthogonal to a normal of unit length (UVs without area; the bake normalises): packing makes
 /// it so.
-std::size_t far_when_packed(const oracle::IndexedMesh& mesh, const Tangents& ours,
-                            const Tangents& theirs, mesh_format::FrameForm form, double bound) {
+std::size_t far_when_packed(const CornerMesh& mesh, const Tangents& ours, const Tangents& theirs,
+                            mesh_format::FrameForm form, double bound) {
     std::size_t far = 0;
     for (std::size_t c = 0; c < ours.size(); ++c) {
-        const glm::vec3 normal = mesh.normals[mesh.indices[c]];
+        const glm::vec3 normal = mesh.normals[c];
         const glm::vec3 truth(theirs[c]);
         if (!(glm::length(truth) > 0.5f) || std::abs(glm::dot(truth, normal)) > 1e-4f ||
             std::abs(glm::length(normal) - 1.0f) > 1e-4f) {
@@ -146,7 +146,7 @@ std::size_t far_when_packed(const oracle::IndexedMesh& mesh, const Tangents& our
 
 /// Returns the number of failures, having printed a line about the mesh.
 int compare(const CornerMesh& mesh, const Tangents& theirs) {
-    const oracle::IndexedMesh welded = oracle::weld(mesh);
+    const bake::SourceScene welded = oracle::welded_scene(mesh);
     const Tangents ours = oracle::our_tangents(welded);
     std::size_t equal = 0;
     std::size_t far = 0;
@@ -178,7 +178,7 @@ int compare(const CornerMesh& mesh, const Tangents& theirs) {
     for (const auto& [form, bound] :
          {std::pair(FrameForm::quat48, 0.005), std::pair(FrameForm::quat32, 0.193),
           std::pair(FrameForm::half3, 3.3)}) {
-        const std::size_t packed = far_when_packed(welded, ours, theirs, form, bound);
+        const std::size_t packed = far_when_packed(mesh, ours, theirs, form, bound);
         if (static_cast<double>(packed) > 1e-4 * static_cast<double>(ours.size())) {
             std::printf("    FAILED: %zu corners of packed form %d\n", packed,
                         static_cast<int>(form));

@@ -16,18 +16,45 @@ using mesh_format::MeshRecord;
 using mesh_format::PositionForm;
 using mesh_format::UvForm;
 
-/// A mesh of one triangle for each three vertices.
-bake::ChunkedMesh mesh_of(std::vector<glm::vec3> positions, std::vector<glm::vec2> uvs) {
-    bake::ChunkedMesh chunked;
-    bake::FramedMesh& mesh = chunked.mesh;
-    mesh.positions = std::move(positions);
-    mesh.uvs = std::move(uvs);
-    mesh.normals.assign(mesh.positions.size(), {0.0f, 1.0f, 0.0f});
-    mesh.tangents.assign(mesh.positions.size(), {1.0f, 0.0f, 0.0f, -1.0f});
-    for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
-    chunked.chunks.push_back({0, static_cast<std::uint32_t>(mesh.indices.size())});
-    return chunked;
-}
+/// A scene of meshes, each with a triangle for each three vertices.
+struct Scene {
+    bake::SourceScene source;
+    bake::FramedTriangles framed;
+    std::vector<bake::ChunkedMesh> meshes;
+
+    void add(const std::vector<glm::vec3>& positions, const std::vector<glm::vec2>& uvs) {
+        bake::ChunkedMesh& mesh = meshes.emplace_back();
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const auto vertex = static_cast<std::uint32_t>(framed.vertices.size());
+            source.positions.push_back(positions[i]);
+            source.uvs.emplace_back(uvs[i].x, 1.0f - uvs[i].y);
+            framed.vertices.push_back({{vertex, 0, vertex}, {1.0f, 0.0f, 0.0f, -1.0f}});
+            mesh.vertices.push_back(vertex);
+            mesh.indices.push_back(static_cast<std::uint16_t>(i));
+            mesh.positions.add(positions[i]);
+            mesh.uvs.add(uv(meshes.size() - 1, i));
+        }
+        mesh.chunks.push_back(
+            {.first_index = 0, .index_count = static_cast<std::uint32_t>(mesh.indices.size())});
+    }
+    const glm::vec3& position(std::size_t mesh, std::size_t i) const {
+        return bake::FramedScene{source, framed}.position(meshes[mesh].vertices[i]);
+    }
+    /// Which 1 - v may have rounded.
+    glm::vec2 uv(std::size_t mesh, std::size_t i) const {
+        return bake::FramedScene{source, framed}.uv(meshes[mesh].vertices[i]);
+    }
+    bake::PackedGeometry pack(const bake::UvBudget& budget = {},
+                              const bake::QuantiseSettings& settings = {
+                                  FrameForm::quat48, PositionForm::quantised}) const {
+        return bake::quantise({source, framed}, meshes, {&budget, 1}, settings);
+    }
+
+    Scene() { source.normals = {{0.0f, 1.0f, 0.0f}}; }
+    Scene(const std::vector<glm::vec3>& positions, const std::vector<glm::vec2>& uvs) : Scene() {
+        add(positions, uvs);
+    }
+};
 
 struct Decoded {
     float position[3];
@@ -83,17 +110,14 @@ std::vector<glm::vec2> random_uvs(std::mt19937& random, std::size_t count, float
     return uvs;
 }
 
-constexpr bake::QuantiseSettings kDefault{FrameForm::quat48, PositionForm::quantised};
-
 TEST(Quantise, ErrorsAreAsStatedAndWithinBudgetForAnySizeAndPlace) {
     std::mt19937 random(1);
     for (const float extent : {1e-6f, 0.01f, 1.0f, 77.0f, 1e5f}) {
         for (const float distance : {0.0f, 1.0f, 100.0f}) {
-            const std::vector meshes{
-                mesh_of(random_points(random, 300, glm::vec3(distance * extent), extent),
-                        random_uvs(random, 300, -0.3f, 1.7f))};
+            const Scene scene(random_points(random, 300, glm::vec3(distance * extent), extent),
+                              random_uvs(random, 300, -0.3f, 1.7f));
             const bake::UvBudget budget;
-            const auto packed = bake::quantise(meshes, {&budget, 1}, kDefault);
+            const auto packed = scene.pack(budget);
             double position_error = 0.0;
             double uv_error = 0.0;
             for (std::size_t i = 0; i < 300; ++i) {
@@ -101,13 +125,13 @@ TEST(Quantise, ErrorsAreAsStatedAndWithinBudgetForAnySizeAndPlace) {
                 double square = 0.0;
                 for (int axis = 0; axis < 3; ++axis) {
                     const double error =
-                        double{decoded.position[axis]} - meshes[0].mesh.positions[i][axis];
+                        double{decoded.position[axis]} - scene.position(0, i)[axis];
                     EXPECT_LE(std::abs(error), extent / 65'535.0);
                     square += error * error;
                 }
                 position_error = std::max(position_error, std::sqrt(square));
                 for (int axis = 0; axis < 2; ++axis) {
-                    double error = decoded.uv[axis] - meshes[0].mesh.uvs[i][axis];
+                    double error = decoded.uv[axis] - scene.uv(0, i)[axis];
                     error -= std::round(error);  // whole numbers may be taken away
                     uv_error = std::max(uv_error, std::abs(error) * budget.texels);
                 }
@@ -122,14 +146,14 @@ TEST(Quantise, ErrorsAreAsStatedAndWithinBudgetForAnySizeAndPlace) {
 TEST(Quantise, EqualPositionsDecodeToEqualBitsInEveryMesh) {
     std::mt19937 random(2);
     const auto shared = random_points(random, 99, {3.0f, -5.0f, 0.7f}, 0.5f);
-    std::vector<bake::ChunkedMesh> meshes;
+    Scene scene;
     for (int i = 0; i < 4; ++i) {
         auto points = random_points(random, 300, glm::vec3(static_cast<float>(i)), 9.0f);
         points.insert(points.end(), shared.begin(), shared.end());
-        meshes.push_back(mesh_of(points, random_uvs(random, points.size(), 0.0f, 1.0f)));
+        scene.add(points, random_uvs(random, points.size(), 0.0f, 1.0f));
     }
     const bake::UvBudget budget;
-    const auto packed = bake::quantise(meshes, {&budget, 1}, kDefault);
+    const auto packed = scene.pack(budget);
     for (std::size_t i = 0; i < shared.size(); ++i) {
         const Decoded first = decode(packed, packed.meshes[0], 300 + i);
         for (const MeshRecord& mesh : packed.meshes) {
@@ -141,10 +165,10 @@ TEST(Quantise, EqualPositionsDecodeToEqualBitsInEveryMesh) {
 
 TEST(Quantise, BoundsHoldTheDecodedVerticesExactly) {
     std::mt19937 random(3);
-    const std::vector meshes{mesh_of(random_points(random, 300, {1.0f, 2.0f, 3.0f}, 5.0f),
-                                     random_uvs(random, 300, 0.0f, 1.0f))};
+    const Scene scene(random_points(random, 300, {1.0f, 2.0f, 3.0f}, 5.0f),
+                      random_uvs(random, 300, 0.0f, 1.0f));
     const bake::UvBudget budget;
-    const auto packed = bake::quantise(meshes, {&budget, 1}, kDefault);
+    const auto packed = scene.pack(budget);
     float low[3], high[3];
     for (std::size_t i = 0; i < 300; ++i) {
         const Decoded decoded = decode(packed, packed.meshes[0], i);
@@ -162,10 +186,10 @@ TEST(Quantise, BoundsHoldTheDecodedVerticesExactly) {
 }
 
 TEST(Quantise, PointLikeMeshesKeepTheirPlace) {
-    const std::vector meshes{mesh_of({{0.1f, 0.3f, 0.7f}, {0.1f, 0.3f, 0.7f}, {0.1f, 0.3f, 0.7f}},
-                                     {{0.5f, 0.25f}, {0.5f, 0.25f}, {0.5f, 0.25f}})};
+    const Scene scene({{0.1f, 0.3f, 0.7f}, {0.1f, 0.3f, 0.7f}, {0.1f, 0.3f, 0.7f}},
+                      {{0.5f, 0.25f}, {0.5f, 0.25f}, {0.5f, 0.25f}});
     const bake::UvBudget budget;
-    const auto packed = bake::quantise(meshes, {&budget, 1}, kDefault);
+    const auto packed = scene.pack(budget);
     const Decoded decoded = decode(packed, packed.meshes[0], 1);
     EXPECT_FLOAT_EQ(decoded.position[0], 0.1f);
     EXPECT_FLOAT_EQ(decoded.position[1], 0.3f);
@@ -177,41 +201,40 @@ TEST(Quantise, PointLikeMeshesKeepTheirPlace) {
 TEST(Quantise, UvsThatWouldMissTheirBudgetStayFloats) {
     std::mt19937 random(4);
     const auto points = random_points(random, 300, {}, 1.0f);
-    const std::vector meshes{mesh_of(points, random_uvs(random, 300, 0.0f, 100.0f))};
+    const Scene scene(points, random_uvs(random, 300, 0.0f, 100.0f));
     for (const std::uint32_t texels : {64u, 2048u}) {
         const bake::UvBudget budget{.texels = texels};
-        const auto packed = bake::quantise(meshes, {&budget, 1}, kDefault);
+        const auto packed = scene.pack(budget);
         EXPECT_EQ(packed.meshes[0].uv_form, texels == 64 ? UvForm::quantised : UvForm::f32);
         EXPECT_LE(packed.scene.uv_error, 0.125f);
         for (std::size_t i = 0; i < 300; ++i) {
-            EXPECT_NEAR(decode(packed, packed.meshes[0], i).uv[0], meshes[0].mesh.uvs[i].x,
-                        0.13 / texels);
+            EXPECT_NEAR(decode(packed, packed.meshes[0], i).uv[0], scene.uv(0, i).x, 0.13 / texels);
         }
     }
 }
 
 TEST(Quantise, ClampedUvsAreNotShifted) {
-    const std::vector meshes{
-        mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, {{5.0f, 5.0f}, {5.5f, 5.0f}, {5.0f, 5.5f}})};
+    const Scene scene({{0, 0, 0}, {1, 0, 0}, {0, 0, 1}},
+                      {{5.0f, 5.0f}, {5.5f, 5.0f}, {5.0f, 5.5f}});
     const bake::UvBudget repeats, clamps{.shiftable = false};
-    const auto shifted = bake::quantise(meshes, {&repeats, 1}, kDefault);
-    const auto kept = bake::quantise(meshes, {&clamps, 1}, kDefault);
+    const auto shifted = scene.pack(repeats);
+    const auto kept = scene.pack(clamps);
     EXPECT_EQ(decode(shifted, shifted.meshes[0], 1).uv[0], 0.5);
     EXPECT_EQ(decode(kept, kept.meshes[0], 1).uv[0], 5.5);
 }
 
 TEST(Quantise, FloatFormsAreExact) {
     std::mt19937 random(5);
-    const std::vector meshes{mesh_of(random_points(random, 300, {9.0f, 1.0f, 4.0f}, 2.0f),
-                                     random_uvs(random, 300, -7.0f, 3.0f))};
+    const Scene scene(random_points(random, 300, {9.0f, 1.0f, 4.0f}, 2.0f),
+                      random_uvs(random, 300, -7.0f, 3.0f));
     const bake::UvBudget budget;
-    const auto packed = bake::quantise(meshes, {&budget, 1}, {FrameForm::f32, PositionForm::f32});
+    const auto packed = scene.pack({}, {FrameForm::f32, PositionForm::f32});
     for (std::size_t i = 0; i < 300; ++i) {
         const Decoded decoded = decode(packed, packed.meshes[0], i);
         for (int axis = 0; axis < 3; ++axis) {
-            EXPECT_EQ(decoded.position[axis], meshes[0].mesh.positions[i][axis]);
+            EXPECT_EQ(decoded.position[axis], scene.position(0, i)[axis]);
         }
-        EXPECT_EQ(decoded.uv[1], double{meshes[0].mesh.uvs[i].y});
+        EXPECT_EQ(decoded.uv[1], double{scene.uv(0, i).y});
     }
     EXPECT_EQ(packed.scene.position_error, 0.0f);
     EXPECT_EQ(packed.scene.uv_error, 0.0f);

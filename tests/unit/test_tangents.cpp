@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "cw2-bake/tangents.h"
+#include "cw2-bake/weld.h"
 
 namespace {
 
@@ -27,8 +28,22 @@ struct Mesh {
         uvs.push_back(uv);
         return static_cast<std::uint32_t>(positions.size() - 1);
     }
-    std::vector<vec4> tangents() const {
-        return bake::generate_tangents(positions, normals, uvs, indices);
+    /// One an index; those of `given` (one an index, zero for none) are kept.
+    std::vector<vec4> tangents(const std::vector<vec4>& given = {}) const {
+        bake::SourceScene scene;
+        scene.tangents = given;
+        scene.positions = positions;
+        scene.normals = normals;
+        scene.uvs = uvs;
+        for (const std::uint32_t index : indices) scene.corners.push_back({index, index, index});
+        scene.triangle_material.assign(indices.size() / 3, 0);
+        scene.materials.resize(1);
+        bake::weld(scene);
+        const bake::FramedTriangles framed = bake::add_tangents(scene);
+        std::vector<vec4> tangents;
+        for (const std::uint32_t vertex : framed.indices)
+            tangents.push_back(framed.vertices[vertex].tangent);
+        return tangents;
     }
 };
 
@@ -175,6 +190,16 @@ TEST(Tangents, AreFiniteAndOfUnitLengthForNumbersAtTheEndsOfFloat) {
             }
         }
     }
+}
+
+TEST(Tangents, ThatTheSourceGivesAreKept) {
+    const Mesh mesh = square([](vec3 p) { return vec2(p); });
+    const vec4 own(0.0f, 1.0f, 0.0f, -1.0f);
+    std::vector<vec4> given(6, vec4(0.0f));
+    given[3] = own;
+    const std::vector<vec4> tangents = mesh.tangents(given);
+    for (std::size_t c = 0; c < 6; ++c)
+        expect_tangent(tangents[c], c == 3 ? vec3(own) : vec3(1, 0, 0), c == 3 ? -1.0f : 1.0f);
 }
 
 TEST(Tangents, OfNoTrianglesAreNone) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <random>
@@ -11,7 +12,6 @@ namespace {
 
 using bake::kAbsent;
 using bake::SourceScene;
-using bake::WeldedMesh;
 
 using Values = std::array<float, 8>;
 
@@ -23,30 +23,6 @@ Values corner_of(const SourceScene& scene, std::size_t i) {
     const bake::Corner& c = scene.corners[i];
     return values_of(scene.positions[c.position], scene.normals[c.normal],
                      c.uv == kAbsent ? glm::vec2{0} : scene.uvs[c.uv]);
-}
-
-/// What weld() promises, in a few slow lines.
-std::vector<WeldedMesh> weld_by_map(const SourceScene& scene) {
-    std::vector<WeldedMesh> meshes;
-    for (std::uint32_t material = 0; material < scene.materials.size(); ++material) {
-        WeldedMesh mesh;
-        mesh.material = material;
-        std::map<Values, std::uint32_t> indices;
-        for (std::size_t i = 0; i < scene.corners.size(); ++i) {
-            if (scene.triangle_material[i / 3] != material) continue;
-            const Values v = corner_of(scene, i);
-            const auto next = static_cast<std::uint32_t>(mesh.positions.size());
-            const auto [entry, is_new] = indices.try_emplace(v, next);
-            if (is_new) {
-                mesh.positions.emplace_back(v[0], v[1], v[2]);
-                mesh.normals.emplace_back(v[3], v[4], v[5]);
-                mesh.uvs.emplace_back(v[6], v[7]);
-            }
-            mesh.indices.push_back(entry->second);
-        }
-        if (!mesh.indices.empty()) meshes.push_back(mesh);
-    }
-    return meshes;
 }
 
 /// Values repeat within the pools, and pool entries repeat among corners.
@@ -75,23 +51,46 @@ SourceScene random_scene(std::mt19937& random, int triangles, int positions, int
     return scene;
 }
 
-TEST(Weld, MakesOneVertexOfEqualValuesInTheOrderOfFirstUse) {
+using Indices = std::array<std::uint32_t, 3>;
+
+Indices indices_of(const bake::Corner& c) {
+    return {c.position, c.normal, c.uv};
+}
+
+TEST(Weld, MakesCornersEqualInIndexWhereTheyAreEqualInValue) {
     std::mt19937 random(1);
     for (int i = 0; i < 200; ++i) {
         // Up to thousands of vertices at one position.
         const SourceScene scene = i % 10 == 0 ? random_scene(random, 2000, 2, 200)
                                               : random_scene(random, 1 + i, 1 + i / 3, 1 + i / 9);
-        const auto meshes = bake::weld(scene);
-        const auto expected = weld_by_map(scene);
-        ASSERT_EQ(meshes.size(), expected.size());
-        for (std::size_t m = 0; m < meshes.size(); ++m) {
-            EXPECT_EQ(meshes[m].material, expected[m].material);
-            EXPECT_EQ(meshes[m].positions, expected[m].positions);
-            EXPECT_EQ(meshes[m].normals, expected[m].normals);
-            EXPECT_EQ(meshes[m].uvs, expected[m].uvs);
-            EXPECT_EQ(meshes[m].indices, expected[m].indices);
+        SourceScene welded = scene;
+        bake::weld(welded);
+        ASSERT_EQ(welded.corners.size(), scene.corners.size());
+        EXPECT_EQ(welded.triangle_material, scene.triangle_material);
+        std::map<Values, Indices> indices;
+        std::map<Indices, Values> values;
+        for (std::size_t c = 0; c < scene.corners.size(); ++c) {
+            const Values value = corner_of(scene, c);
+            ASSERT_NE(welded.corners[c].uv, kAbsent);
+            ASSERT_EQ(corner_of(welded, c), value) << i;
+            const Indices index = indices_of(welded.corners[c]);
+            ASSERT_EQ(indices.try_emplace(value, index).first->second, index) << i;
+            ASSERT_EQ(values.try_emplace(index, value).first->second, value) << i;
         }
-        if (HasFailure()) FAIL() << i;
+    }
+}
+
+TEST(Weld, TakesTheFirstElementOfEachValue) {
+    std::mt19937 random(2);
+    SourceScene scene = random_scene(random, 3000, 700, 90);
+    bake::weld(scene);
+    for (const bake::Corner& c : scene.corners) {
+        const auto first = [](const auto& all, std::uint32_t index) {
+            return std::find(all.begin(), all.end(), all[index]) - all.begin();
+        };
+        EXPECT_EQ(c.position, first(scene.positions, c.position));
+        EXPECT_EQ(c.normal, first(scene.normals, c.normal));
+        EXPECT_EQ(c.uv, first(scene.uvs, c.uv));
     }
 }
 
@@ -100,13 +99,16 @@ TEST(Weld, TreatsAMissingUvAsZero) {
     scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     scene.normals = {{0, 0, 1}};
     scene.uvs = {{1, 1}, {0, 0}};
-    scene.corners = {{0, 0, 1}, {1, 0, kAbsent}, {2, 0, 0}, {0, 0, kAbsent}, {1, 0, 1}, {2, 0, 0}};
-    scene.triangle_material = {0, 0};
+    scene.corners = {{0, 0, 1}, {1, 0, kAbsent}, {2, 0, 0}};
+    scene.triangle_material = {0};
     scene.materials.resize(1);
-    const auto meshes = bake::weld(scene);
-    ASSERT_EQ(meshes.size(), 1u);
-    EXPECT_EQ(meshes[0].indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 1, 2}));
-    EXPECT_EQ(meshes[0].uvs, (std::vector<glm::vec2>{{0, 0}, {0, 0}, {1, 1}}));
+    bake::weld(scene);
+    EXPECT_EQ(scene.corners[1].uv, 1u);
+    scene.uvs = {{1, 1}};
+    scene.corners = {{0, 0, 0}, {1, 0, kAbsent}, {2, 0, kAbsent}};
+    bake::weld(scene);
+    EXPECT_EQ(scene.uvs[scene.corners[1].uv], glm::vec2(0, 0));
+    EXPECT_EQ(scene.corners[1].uv, scene.corners[2].uv);
 }
 
 TEST(UpAxis, TurnsZToYAndKeepsHandedness) {

@@ -1,0 +1,32 @@
+// Which way UVs wind on faces whose UVs cannot tell, for the tangent generator.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cw2-bake/source_scene.h"
+#include "cw2-bake/tangent_directions.h"
+#include "cw2-bake/tangent_topology.h"
+
+namespace bake {
+
+/// Faces without usable UVs have the winding of the group that reaches them first, with whichever
+/// corner; groups grow one after the other, in the order of their first corner.
+class Windings {
+ public:
+    Windings(const SourceScene& scene, const CornerLists& lists);
+
+    /// Puts the windings of such faces into spokes[i] of corners[i].
+    void settle(std::span<const std::uint32_t> corners, std::span<Spoke> spokes) const;
+
+ private:
+    void grow_groups(const CornerSlots& slots, std::span<const Spoke> spokes);
+    /// Where the face is in unusable_, or its end.
+    std::size_t find(std::uint32_t face) const;
+
+    std::vector<std::uint32_t> unusable_;  // faces, ascending
+    std::vector<signed char> preserving_;  // of each: 1, 0, or -1 if none has reached it
+};
+
+}  // namespace bake
