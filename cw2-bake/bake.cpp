@@ -204,8 +204,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
     clock.end("write");
     if (settings.stats)
         write_stats(settings, {bytes, measure(framed_scene, meshes), geometry.scene, clock});
-    return fmt::format("{}
-{}{}", settings.output.string(), summary(document, bytes),
+    return fmt::format("{}\n{}{}", settings.output.string(), summary(document, bytes),
                        taken_over(textures));
 }
 
