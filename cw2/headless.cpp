@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cw2/image_file.h"
+#include "cw2/legend.h"
 #include "cw2/pipelines.h"
 #include "cw2/renderer.h"
 #include "cw2/resources.h"
@@ -59,7 +60,7 @@ class OffscreenTarget {
         submit_and_wait(device_, commands_);
     }
 
-    std::span<const std::byte> pixels() const { return pixels_.mapped; }
+    std::span<std::byte> pixels() const { return pixels_.mapped; }
 
  private:
     const Device& device_;
@@ -104,6 +105,19 @@ void write_stats(const std::filesystem::path& path, const Device& device, const 
     file.commit();
 }
 
+/// Puts the legend of its false colours onto a PNG's pixels.
+void draw_legends(std::span<std::byte> pixels, const PictureSize& size,
+                  const FrameSettings& settings) {
+    if (!settings.false_color) return;
+    const std::uint32_t end = settings.split ? settings.split->column(size.width) : size.width;
+    const auto draw = [&](View view, std::uint32_t left, std::uint32_t right) {
+        draw_legend(pixels, size.width, size.height, left, right,
+                    settings.false_color->range_of(view));
+    };
+    draw(settings.view, 0, end);
+    if (settings.split) draw(settings.split->right.view, end, size.width);
+}
+
 }  // namespace
 
 void render_to_file(const Device& device, const Options& options) {
@@ -120,6 +134,11 @@ void render_to_file(const Device& device, const Options& options) {
         static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     FrameSettings settings =
         frame_settings(completed(options, scene.start()), scene.bounds(), aspect);
+    if (kind == ImageKind::exr) {
+        // It holds the values themselves.
+        settings.exposure = 0.0f;
+        settings.false_color.reset();
+    }
     settings.light.position = orbit(settings.light.position, scene.bounds().center, options.time);
 
     start = Clock::now();
@@ -130,6 +149,7 @@ void render_to_file(const Device& device, const Options& options) {
     timings.first_frame = milliseconds_since(start);
 
     start = Clock::now();
+    draw_legends(target.pixels(), options.size, settings);
     write_image(*options.output, options.size.width, options.size.height, target.pixels());
     timings.save = milliseconds_since(start);
 

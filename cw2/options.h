@@ -1,6 +1,7 @@
 // The command line, and the config files that stand for one.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
@@ -27,6 +28,10 @@ struct Options {
     std::optional<std::filesystem::path> output;  ///< none: open a window
     PictureSize size;
     View view = interop::kViewShaded;
+    std::optional<std::array<Side, 2>> split;  ///< in place of `view`
+    float divider = 0.5f;                      ///< in [0, 1]
+    float exposure = 0.0f;                     ///< stops, in [-64, 64]
+    std::optional<FalseColor> false_color;
     std::optional<std::uint32_t> samples;  ///< 1 or 4; none: by the device and the output
     std::optional<glm::vec3> camera_position;
     std::optional<glm::vec3> camera_target;

@@ -52,7 +52,7 @@ PipelineLayout make_pipeline_layout(const Device& device, VkDescriptorSetLayout 
     const std::array sets{scene_set, material_set};
     const VkPushConstantRange constants{
         .stageFlags = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
-        .size = sizeof(interop::DrawConstants)};
+        .size = interop::kDisplayOffset + sizeof(interop::DisplayConstants)};
     const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                           .setLayoutCount = sets.size(),
                                           .pSetLayouts = sets.data(),
@@ -102,11 +102,12 @@ std::array<std::uint32_t, interop::kSpecializationCount> constants_of(const Pipe
     values[interop::kPositionFormConstant] = static_cast<std::uint32_t>(key.forms.position);
     values[interop::kFrameFormConstant] = static_cast<std::uint32_t>(key.forms.frame);
     values[interop::kUvFormConstant] = static_cast<std::uint32_t>(key.forms.uv);
-    values[interop::kViewConstant] = key.view;
-    values[interop::kNormalMapConstant] = key.normal_map ? 1 : 0;
-    values[interop::kAlphaMaskConstant] = key.alpha_mask ? 1 : 0;
+    values[interop::kViewConstant] = key.side.view;
+    values[interop::kNormalMapConstant] = key.side.normal_map ? 1 : 0;
+    values[interop::kAlphaMaskConstant] = key.side.alpha_mask ? 1 : 0;
     values[interop::kRoughnessMapConstant] = key.roughness_map ? 1 : 0;
     values[interop::kMetalnessMapConstant] = key.metalness_map ? 1 : 0;
+    values[interop::kFalseColorConstant] = key.false_color ? 1 : 0;
     return values;
 }
 

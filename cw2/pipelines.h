@@ -48,11 +48,10 @@ struct VertexForms {
 struct PipelineKey {
     Shading shading;
     VertexForms forms;
-    View view;
-    bool normal_map;     ///< false: the vertex normal shades
-    bool alpha_mask;     ///< false: nothing is discarded
+    Side side;
     bool roughness_map;  ///< false: the factor alone counts
     bool metalness_map;  ///< the same
+    bool false_color;
     auto operator<=>(const PipelineKey&) const = default;
 };
 

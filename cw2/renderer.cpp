@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "cw2/visibility.h"
@@ -20,6 +22,9 @@ constexpr ImageUse kDepthAttachmentUse{
     VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT};
+
+constexpr VkShaderStageFlags kConstantsStages =
+    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
 /// The contents are discarded, but what used the image before must be over.
 ImageUse discarded(const ImageUse& use) {
@@ -63,14 +68,13 @@ interop::SceneUniforms scene_uniforms(const Scene& scene, VkExtent2D extent,
     return uniforms;
 }
 
-PipelineKey pipeline_key(const Draw& draw, const FrameSettings& settings) {
+PipelineKey pipeline_key(const Draw& draw, const Side& side, const FrameSettings& settings) {
     return {.shading = draw.shading,
             .forms = draw.forms,
-            .view = settings.view,
-            .normal_map = settings.normal_map,
-            .alpha_mask = settings.alpha_mask,
+            .side = side,
             .roughness_map = !settings.materials.roughness,
-            .metalness_map = !settings.materials.metalness};
+            .metalness_map = !settings.materials.metalness,
+            .false_color = settings.false_color.has_value()};
 }
 
 interop::DrawConstants draw_constants(const Draw& draw, const MaterialOverrides& materials) {
@@ -79,6 +83,27 @@ interop::DrawConstants draw_constants(const Draw& draw, const MaterialOverrides&
     constants.metalness = materials.metalness.value_or(constants.metalness);
     constants.normal_scale *= materials.normal_strength;
     return constants;
+}
+
+interop::DisplayConstants display_constants(const Side& side, const FrameSettings& settings) {
+    interop::DisplayConstants constants{.exposure = std::exp2(settings.exposure)};
+    if (settings.false_color) {
+        const ValueRange range = settings.false_color->range_of(side.view);
+        constants.false_color_low = range.low;
+        constants.false_color_high = range.high;
+    }
+    return constants;
+}
+
+/// A white line, a pixel to either side of where the columns of the right side begin.
+void draw_divider(VkCommandBuffer commands, std::uint32_t column, VkExtent2D extent) {
+    const std::uint32_t left = column > 0 ? column - 1 : 0;
+    const std::uint32_t right = std::min(column + 1, extent.width);
+    const VkClearAttachment white{.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT,
+                                  .clearValue = {.color = {.float32 = {1.0f, 1.0f, 1.0f, 0.0f}}}};
+    const VkClearRect rectangle{
+        {{static_cast<std::int32_t>(left), 0}, {right - left, extent.height}}, 0, 1};
+    vkCmdClearAttachments(commands, 1, &white, 1, &rectangle);
 }
 
 }  // namespace
@@ -180,13 +205,31 @@ void Renderer::begin_attachments(VkCommandBuffer commands, const FrameTarget& ta
                               .height = static_cast<float>(target.extent.height),
                               .minDepth = 0.0f,
                               .maxDepth = 1.0f};
-    const VkRect2D scissor{{0, 0}, target.extent};
     vkCmdSetViewport(commands, 0, 1, &viewport);
-    vkCmdSetScissor(commands, 0, 1, &scissor);
+}
+
+void Renderer::draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
+                          VkExtent2D extent, const FrameSettings& settings) {
+    const std::uint32_t end = settings.split ? settings.split->column(extent.width) : extent.width;
+    const auto draw = [&](const Side& side, std::uint32_t left, std::uint32_t right) {
+        if (left == right) return;
+        const VkRect2D scissor{{static_cast<std::int32_t>(left), 0}, {right - left, extent.height}};
+        vkCmdSetScissor(commands, 0, 1, &scissor);
+        const interop::DisplayConstants display = display_constants(side, settings);
+        // The two layouts have the same push constants: what is pushed through one is there for
+        // both.
+        vkCmdPushConstants(commands, layouts_.pipeline(Shading::opaque), kConstantsStages,
+                           interop::kDisplayOffset, sizeof display, &display);
+        draw_visible(commands, scene_set, scene, side, settings);
+    };
+    draw(settings, 0, end);
+    if (!settings.split) return;
+    draw(settings.split->right, end, extent.width);
+    draw_divider(commands, end, extent);
 }
 
 void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
-                            const FrameSettings& settings) {
+                            const Side& side, const FrameSettings& settings) {
     VkPipeline bound_pipeline = VK_NULL_HANDLE;
     VkPipelineLayout bound_layout = VK_NULL_HANDLE;
     VkDescriptorSet bound_material = VK_NULL_HANDLE;
@@ -195,7 +238,7 @@ void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set,
         const SceneChunk& chunk = scene.chunks()[index];
         const Draw& draw = scene.draws()[chunk.draw];
         if (&draw != bound_draw) {
-            const VkPipeline pipeline = pipelines_.get(pipeline_key(draw, settings));
+            const VkPipeline pipeline = pipelines_.get(pipeline_key(draw, side, settings));
             const VkPipelineLayout layout = layouts_.pipeline(draw.shading);
             if (pipeline != bound_pipeline) {
                 vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
@@ -212,9 +255,7 @@ void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set,
                 bound_material = draw.material;
             }
             const interop::DrawConstants constants = draw_constants(draw, settings.materials);
-            vkCmdPushConstants(commands, layout,
-                               VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                               sizeof constants, &constants);
+            vkCmdPushConstants(commands, layout, kConstantsStages, 0, sizeof constants, &constants);
             vkCmdSetCullMode(commands, draw.cull_back ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE);
             const VkBuffer vertices = scene.vertices();
             vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &draw.vertex_offset);
@@ -241,7 +282,7 @@ void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene&
     if (timestamps_) vkCmdResetQueryPool(commands, timestamps_.get(), 2 * slot, 2);
     write_timestamp(commands, VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, 2 * slot);
     begin_attachments(commands, target, settings);
-    draw_visible(commands, slots_[slot].set, scene, settings);
+    draw_sides(commands, slots_[slot].set, scene, target.extent, settings);
     vkCmdEndRendering(commands);
     write_timestamp(commands, VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 2 * slot + 1);
     // Resolving, too, is a colour attachment write.

@@ -3,6 +3,8 @@
 
 #include <vulkan/vulkan.h>
 
+#include <cmath>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <vector>
@@ -33,15 +35,26 @@ struct MaterialOverrides {
     float normal_strength = 1.0f;    ///< a factor on the slopes of all normal maps
 };
 
-/// What a frame shows.
-struct FrameSettings {
-    View view = interop::kViewShaded;
-    bool normal_map = true;
-    bool alpha_mask = true;
+/// That a frame shows the same scene in two ways, side by side.
+struct Split {
+    Side right;
+    float divider = 0.5f;  ///< where the right side begins, in [0, 1] of the width
+
+    /// The first column of pixels that belongs to the right side.
+    std::uint32_t column(std::uint32_t width) const {
+        return static_cast<std::uint32_t>(std::lround(static_cast<float>(width) * divider));
+    }
+};
+
+/// What a frame shows; the base is its left side, if there is a split.
+struct FrameSettings : Side {
+    std::optional<Split> split;
     Camera camera{};
     Light light{};
     MaterialOverrides materials{};
-    glm::vec3 background{0.1f};  ///< linear
+    glm::vec3 background{0.1f};             ///< linear
+    float exposure = 0.0f;                  ///< stops: values are multiplied by 2^exposure
+    std::optional<FalseColor> false_color;  ///< in place of the exposure
 };
 
 class Renderer {
@@ -74,8 +87,10 @@ class Renderer {
     void resize(VkExtent2D extent);
     void begin_attachments(VkCommandBuffer commands, const FrameTarget& target,
                            const FrameSettings& settings) const;
+    void draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
+                    VkExtent2D extent, const FrameSettings& settings);
     void draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
-                      const FrameSettings& settings);
+                      const Side& side, const FrameSettings& settings);
     void write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 stage,
                          std::uint32_t query) const;
 

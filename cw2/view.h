@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -39,6 +40,51 @@ inline constexpr std::array<std::string_view, interop::kViewCount> kViewDescript
     "bitangent, handedness applied, as 0.5 b + 0.5",
     "fractional part of the texture coordinate",
     "alpha mask; 1 where a material has none",
+};
+
+/// Values that false colour spreads its colours over: by their logarithm if low is positive, else
+/// evenly. high > low.
+struct ValueRange {
+    float low;
+    float high;
+    bool operator==(const ValueRange&) const = default;
+};
+
+/// The range that shows a view well, indexed by View.
+inline constexpr std::array<ValueRange, interop::kViewCount> kViewRanges{{
+    {0.001f, 10.0f},   // shaded
+    {0.0f, 1.0f},      // normal
+    {0.0f, 1.0f},      // vertex-normal
+    {0.0f, 1.0f},      // view-direction
+    {0.0f, 1.0f},      // light-direction
+    {0.0f, 0.32f},     // diffuse: at most 1 / pi
+    {0.001f, 100.0f},  // specular
+    {0.01f, 1e4f},     // distribution
+    {0.0f, 1.0f},      // masking
+    {0.0f, 1.0f},      // fresnel
+    {0.0f, 1.0f},      // base-color
+    {0.0f, 1.0f},      // roughness
+    {0.0f, 1.0f},      // metalness
+    {0.0f, 1.0f},      // tangent
+    {0.0f, 1.0f},      // bitangent
+    {0.0f, 1.0f},      // uv
+    {0.0f, 1.0f},      // alpha-mask
+}};
+
+/// That a view is to be shown in false colours.
+struct FalseColor {
+    std::optional<ValueRange> range;  ///< none: the view's own
+    bool operator==(const FalseColor&) const = default;
+
+    ValueRange range_of(View view) const { return range.value_or(kViewRanges[view]); }
+};
+
+/// What one side of a picture shows.
+struct Side {
+    View view = interop::kViewShaded;
+    bool normal_map = true;  ///< false: the vertex normal shades
+    bool alpha_mask = true;  ///< false: nothing is discarded
+    auto operator<=>(const Side&) const = default;
 };
 
 inline std::optional<View> view_named(std::string_view name) {

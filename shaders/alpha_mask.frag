@@ -10,6 +10,6 @@ layout(set = kMaterialSet, binding = kAlphaMaskBinding) uniform sampler2D alpha_
 void main() {
     const float alpha_mask = texture(alpha_mask_map, uv).r;
     // The colour first: its samples need the derivatives of the whole quad.
-    color = vec4(view_color(alpha_mask), 1.0);
+    color = displayed(view_color(alpha_mask));
     if (use_alpha_mask != 0 && alpha_mask < draw.alpha_cutoff) discard;
 }

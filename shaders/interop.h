@@ -58,6 +58,14 @@ struct DrawConstants {
     float back_normals;  // multiplies the normals of back faces: 1 or -1
 };
 
+// Push constants after those, at kDisplayOffset: how a view's values become colours.
+struct DisplayConstants {
+    float exposure;          // factor on the values
+    float false_color_low;   // values from low to high have the whole range of colours,
+    float false_color_high;  // see false_color.h
+};
+CW2_CONSTANT uint kDisplayOffset = 80;
+
 CW2_CONSTANT uint kNormalMapAbsent = 0;
 CW2_CONSTANT uint kNormalMapXyz = 1;
 CW2_CONSTANT uint kNormalMapXy = 2;  // z is rebuilt
@@ -76,7 +84,8 @@ CW2_CONSTANT uint kNormalMapConstant = 4;     // 0: the vertex normal shades
 CW2_CONSTANT uint kAlphaMaskConstant = 5;     // 0: nothing is discarded
 CW2_CONSTANT uint kRoughnessMapConstant = 6;  // 0: the factor alone counts
 CW2_CONSTANT uint kMetalnessMapConstant = 7;  // the same
-CW2_CONSTANT uint kSpecializationCount = 8;
+CW2_CONSTANT uint kFalseColorConstant = 8;    // 0: exposure, else false colour
+CW2_CONSTANT uint kSpecializationCount = 9;
 
 // What a fragment shows; cw2/view.h names them.
 CW2_CONSTANT uint kViewShaded = 0;
@@ -102,6 +111,7 @@ CW2_CONSTANT uint kViewCount = 17;
 static_assert(offsetof(SceneUniforms, cameraPosition) == 192);
 static_assert(offsetof(SceneUniforms, ambientColor) == 240 && sizeof(SceneUniforms) == 256);
 static_assert(offsetof(DrawConstants, base_color) == 32 && sizeof(DrawConstants) == 68);
+static_assert(kDisplayOffset >= sizeof(DrawConstants) && kDisplayOffset % 16 == 0);
 }  // namespace cw2::interop
 #endif
 

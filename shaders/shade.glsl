@@ -1,14 +1,19 @@
 // Shades a fragment in world space; the body of both pipelines' fragment shaders.
 #include "shaders/brdf.glsl"
+#include "shaders/false_color.h"
 #include "shaders/interop.h"
 
 layout(constant_id = kViewConstant) const uint view = kViewShaded;
 layout(constant_id = kNormalMapConstant) const uint use_normal_map = 1;
 layout(constant_id = kRoughnessMapConstant) const uint use_roughness_map = 1;
 layout(constant_id = kMetalnessMapConstant) const uint use_metalness_map = 1;
+layout(constant_id = kFalseColorConstant) const uint use_false_color = 0;
 
 layout(set = kSceneSet, binding = kSceneBinding, std140) uniform Scene { SceneUniforms scene; };
-layout(push_constant) uniform Draw { DrawConstants draw; };
+layout(push_constant) uniform Push {
+    DrawConstants draw;
+    layout(offset = kDisplayOffset) DisplayConstants display;
+};
 
 layout(set = kMaterialSet, binding = kBaseColorBinding) uniform sampler2D base_color_map;
 layout(set = kMaterialSet, binding = kRoughnessBinding) uniform sampler2D roughness_map;
@@ -80,4 +85,12 @@ vec3 view_color(float alpha_mask) {
     }
     return scene.ambientColor * surface.base_color +
            scene.lightColor * (brdf.diffuse * brdf.n_dot_l + brdf.specular_n_dot_l);
+}
+
+// The colour that shows the value of a view.
+vec4 displayed(vec3 value) {
+    if (use_false_color == 0) return vec4(value * display.exposure, 1.0);
+    const float position = false_color_position(luminance_of(value), display.false_color_low,
+                                                display.false_color_high);
+    return vec4(false_color(position), 1.0);
 }

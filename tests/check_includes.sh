@@ -13,13 +13,13 @@ cw2-bake/*              | meshoptimizer.h zstd.h xxhash.h stb/stb_dxt.h
 cw2-bake/read_*.cpp     | fast_float/* tiny_gltf.h
 cw2-bake/obj_parser.cpp | fast_float/*
 cw2-bake/image_reader.* | OpenImageIO/*
-cw2/*                   | mesh-format/* cw2/* shaders/interop.h *.vert.h *.frag.h glm/* fmt/*
+cw2/*                   | mesh-format/* cw2/* shaders/interop.h shaders/false_color.h *.vert.h *.frag.h glm/* fmt/*
 cw2/*                   | tbb/* CLI/* vulkan/* glslang/* SPIRV/* png.h Imf*.h
 cw2/*                   | meshoptimizer.h zstd.h xxhash.h
 cw2/window*             | GLFW/*
 cw2/ui*                 | imgui*
 shaders/*               | mesh-format/* shaders/*
-shaders/interop.h       | glm/*
+shaders/*.h             | glm/*
 '
 standard='^([a-z0-9_]+|(dlfcn|fcntl|unistd)\.h|sys/[a-z]+\.h)$'
 status=0

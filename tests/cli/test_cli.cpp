@@ -212,6 +212,16 @@ TEST_F(Cli, Cw2RefusesWrongUsage) {
         {{"--samples", "2"}, {"--samples", "2"}},
         {{"--anisotropy", "99"}, {"--anisotropy", "99"}},
         {{"--bench", "-1"}, {"--bench", "-1"}},
+        {{"--exposure", "bright"}, {"--exposure", "bright"}},
+        {{"--exposure", "65"}, {"--exposure", "65"}},
+        {{"--false-color", "1,1"}, {"--false-color", "1,1"}},
+        {{"--false-color", "1"}, {"--false-color", "'1'"}},
+        {{"--false-color", "0,nan"}, {"--false-color", "0,nan"}},
+        {{"--split", "normal"}, {"--split", "'normal'"}},
+        {{"--split", "normal,sideways"}, {"--split", "normal,sideways"}},
+        {{"--split", "normal,shaded,uv"}, {"--split"}},
+        {{"--split", "normal:no-camera,shaded"}, {"--split", "no-camera"}},
+        {{"--divider", "1.5"}, {"--divider", "1.5"}},
         {{"another.cw2mesh"}, {"another.cw2mesh"}},
     };
     for (const auto& [options, parts] : table) {

@@ -41,6 +41,13 @@ class RandomOptions {
         options.output = text() + ".png";
         options.size = {1 + below(20000), 1 + below(20000)};
         options.view = below(interop::kViewCount);
+        maybe([&] { options.split = {side(), side()}; });
+        options.divider = std::uniform_real_distribution(0.0f, 1.0f)(random_);
+        options.exposure = std::uniform_real_distribution(-64.0f, 64.0f)(random_);
+        maybe([&] {
+            options.false_color.emplace();
+            maybe([&] { options.false_color->range = range(); });
+        });
         maybe([&] { options.samples = below(2) == 0 ? 1 : 4; });
         maybe([&] { options.camera_position = vector(); });
         maybe([&] { options.camera_target = vector(); });
@@ -85,6 +92,13 @@ class RandomOptions {
     glm::vec3 vector() {
         return {number<float, std::uint32_t>(), number<float, std::uint32_t>(),
                 number<float, std::uint32_t>()};
+    }
+    Side side() { return {below(interop::kViewCount), below(2) == 0, below(2) == 0}; }
+    ValueRange range() {
+        for (;;) {
+            const ValueRange range{number<float, std::uint32_t>(), number<float, std::uint32_t>()};
+            if (range.low < range.high) return range;
+        }
     }
     std::string text() {
         static const Words kParts{"a", "Z",    "0",    " ",   "#",      "\"",     "'",         "\\",
