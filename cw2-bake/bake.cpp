@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cctype>
 #include <thread>
 
 #include "cw2-bake/chunks.h"
@@ -11,6 +12,7 @@
 #include "cw2-bake/normals.h"
 #include "cw2-bake/progress.h"
 #include "cw2-bake/quantise.h"
+#include "cw2-bake/read_gltf.h"
 #include "cw2-bake/read_obj.h"
 #include "cw2-bake/report.h"
 #include "cw2-bake/stats.h"
@@ -28,6 +30,15 @@ using mesh_format::kNoTexture;
 using mesh_format::MaterialRecord;
 using mesh_format::StringRef;
 using mesh_format::TextureRecord;
+
+SourceScene read_scene(const std::filesystem::path& path, const Warn& warn) {
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
+        return static_cast<char>(std::tolower(c));
+    });
+    return extension == ".gltf" || extension == ".glb" ? read_gltf(path, warn)
+                                                       : read_obj(path, warn);
+}
 
 TextureSet make_textures(const Settings& settings, const SourceScene& scene, const Warn& warn) {
     if (settings.textures == TextureMode::none) {
@@ -163,7 +174,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
                                     std::max<std::size_t>(threads, 1));
 
     StageClock clock;
-    SourceScene scene = read_obj(settings.input, warn);
+    SourceScene scene = read_scene(settings.input, warn);
     clock.end("read");
     if (settings.z_up) turn_z_up(scene);
     generate_normals(scene);

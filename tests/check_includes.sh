@@ -10,7 +10,8 @@ rules='
 mesh-format/*           | mesh-format/*
 cw2-bake/*              | mesh-format/* cw2-bake/* glm/* fmt/* tbb/* CLI/*
 cw2-bake/*              | meshoptimizer.h zstd.h xxhash.h stb/stb_dxt.h
-cw2-bake/read_*.cpp     | fast_float/* tiny_gltf.h
+cw2-bake/read_*.cpp     | fast_float/*
+cw2-bake/gltf_*         | tiny_gltf.h nlohmann/json.hpp
 cw2-bake/obj_parser.cpp | fast_float/*
 cw2-bake/image_reader.* | OpenImageIO/*
 cw2/*                   | mesh-format/* cw2/* shaders/interop.h shaders/false_color.h *.vert.h *.frag.h glm/* fmt/*

@@ -1,0 +1,62 @@
+// The triangles of glTF's primitives, collected into a scene.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cw2-bake/gltf_accessors.h"
+#include "cw2-bake/gltf_materials.h"
+#include "cw2-bake/source_scene.h"
+
+namespace bake {
+
+/// A primitive mode's triangles over `indices`, in the order and winding that the glTF
+/// specification gives them (section 3.7.2.1); those with two equal indices are left out.
+std::vector<std::array<std::uint32_t, 3>> triangles_of(int mode,
+                                                       std::span<const std::uint32_t> indices);
+
+class GltfPrimitives {
+ public:
+    /// All must outlive this.
+    GltfPrimitives(const GltfFile& file, const Warn& warn, SourceScene& scene);
+
+    /// Adds the mesh's triangles, transformed. Throws BakeError.
+    void add_mesh(int mesh, const glm::dmat4& world_from_mesh);
+
+    /// Of what was left out, once for the file.
+    void warn_of_left_out() const;
+
+ private:
+    struct Place;
+    struct Arrays;
+    struct Material {
+        GltfMaterial of;
+        std::uint32_t index;  ///< in the scene
+    };
+    const Material& material(int index);
+    Arrays read_arrays(const tinygltf::Primitive& primitive, const Material& material,
+                       const std::string& place);
+    void add_primitive(const tinygltf::Primitive& primitive, const std::string& place,
+                       const glm::dmat4& world_from_mesh);
+    void count_corners(std::size_t corners, const std::string& place);
+
+    const GltfFile& file_;
+    const Warn& warn_;
+    SourceScene& scene_;
+    GltfAccessors accessors_;
+    GltfMaterials converter_;
+    std::map<int, Material> materials_;     ///< by index in the glTF
+    std::vector<std::uint32_t> new_index_;  ///< of the vertices of the primitive at hand
+    std::size_t corners_ = 0;
+    std::size_t most_corners_;
+    std::size_t points_or_lines_ = 0;
+    bool colors_ = false;
+    bool some_without_normals_ = false;
+};
+
+}  // namespace bake
