@@ -17,8 +17,13 @@ enum class CommandKind {
     toggle_normal_map,
     toggle_alpha_mask,
     reset,
+    toggle_panel,
     reload_shaders,
-    save_screenshot,
+    save_picture,
+    save_window,  ///< the panel included
+    save_settings,
+    save_settings_in_panel,  ///< the same where the panel has the focus; else the key is not for it
+    copy_camera,
     end,
 };
 
@@ -27,13 +32,25 @@ struct Command {
     View view = interop::kViewShaded;  ///< of show_view
 };
 
+enum class MouseButton { left, right };
+
+/// A mouse button was pressed or let go.
+struct MouseAction {
+    MouseButton button;
+    bool pressed;
+    glm::vec2 cursor;  ///< pixels from the picture's upper left corner
+};
+
 /// What the user did since the last look at it.
 struct Input {
-    std::vector<Command> commands;  ///< in their order
-    glm::vec3 direction{0.0f};      ///< of the keys held: right, up, forward; each -1, 0 or 1
-    float pace = 1.0f;              ///< a factor on the speed
-    glm::vec2 drag{0.0f};           ///< of the mouse: screen units to the right and down
-    bool exposed = false;           ///< the window's picture is lost
+    std::vector<Command> commands;           ///< in their order
+    std::vector<MouseAction> mouse_actions;  ///< in their order
+    glm::vec3 direction{0.0f};  ///< of the keys held: right, up, forward; each -1, 0 or 1
+    float pace = 1.0f;          ///< a factor on the speed
+    glm::vec2 cursor{0.0f};     ///< where it is now, pixels from the picture's upper left corner
+    glm::vec2 drag{0.0f};       ///< of the hidden cursor: screen units to the right and down
+    bool exposed = false;       ///< the window's picture is lost
+    bool anything = false;      ///< there was any event at all
 };
 
 }  // namespace cw2

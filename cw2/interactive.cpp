@@ -2,17 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "cw2/file_watch.h"
 #include "cw2/image_file.h"
+#include "cw2/panel.h"
 #include "cw2/presenter.h"
 #include "cw2/scene.h"
 #include "cw2/shader_compiler.h"
+#include "cw2/ui_pass.h"
 #include "cw2/viewer_state.h"
 #include "cw2/window.h"
 #include "mesh-format/io.h"
@@ -23,8 +28,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How often the title is written anew, and how long one waits where nothing happens.
+/// How often the title is written anew.
 constexpr double kTitleSeconds = 0.25;
+/// How long one waits for an event where nothing happens.
+constexpr double kIdleSeconds = 0.25;
+/// How often one looks whether the scene's file has changed.
+constexpr double kLookSeconds = 0.5;
+/// Frames that Dear ImGui takes to show what an event does.
+constexpr int kFramesToSettle = 3;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -35,12 +46,19 @@ float aspect_of(VkExtent2D extent) {
     return static_cast<float>(extent.width) / static_cast<float>(extent.height);
 }
 
-/// The first of cw2-0001.png, cw2-0002.png ... that does not exist in the current folder.
-std::string new_screenshot_name() {
+/// The first of cw2-0001.png, cw2-0002.png ... (for extension ".png") that does not exist in the
+/// current folder.
+std::string new_file_name(std::string_view extension) {
     for (int number = 1;; ++number) {
-        std::string name = fmt::format("cw2-{:04}.png", number);
+        std::string name = fmt::format("cw2-{:04}{}", number, extension);
         if (!std::filesystem::exists(std::filesystem::symlink_status(name))) return name;
     }
+}
+
+/// `options` with what only a running program knows.
+Options resolved(Options options, const Device& device) {
+    if (!options.samples) options.samples = device.is_cpu() ? 1 : 4;
+    return options;
 }
 
 /// Writes the window's title: the scene, the view and the time of a frame, after an error if there
@@ -73,54 +91,127 @@ class Title {
 /// What happens while the window is open.
 class Session {
  public:
-    Session(const Options& options, const std::filesystem::path& sources, const Device& device,
-            Window& window, Presenter& presenter, const Scene& scene)
+    Session(const Options& options, const std::filesystem::path& sources, const Instance& instance,
+            const Device& device, Window& window, VkSurfaceKHR surface)
         : sources_(sources),
+          instance_(instance),
+          device_(device),
           draws_always_(!device.is_cpu()),
           window_(window),
-          presenter_(presenter),
-          scene_(scene),
-          state_(completed(options, scene.start()), scene.bounds(), aspect_of(window.extent())),
+          layouts_(device),
+          watch_(options.scene),
+          scene_(std::make_unique<Scene>(
+              load_scene(device, layouts_, options.scene, texture_settings(options, device)))),
+          presenter_(device, surface, layouts_, built_in_shaders(),
+                     static_cast<VkSampleCountFlagBits>(*options.samples)),
+          state_(completed(options, scene_->start()), scene_->bounds(), aspect_of(window.extent())),
           title_(window, options.scene.filename().string()) {}
 
     void run() {
         while (!ended_ && !window_.closed()) step();
+        presenter_.finish();
     }
 
  private:
     void step() {
-        const Input input = window_.poll(idle_ ? kTitleSeconds : 0.0);
+        Input input = window_.poll(idle_ ? kIdleSeconds : 0.0);
+        follow_the_file();
+        const bool extent_changed = !same(extent_, window_.extent());
+        extent_ = window_.extent();
+        if (panel_shown_) run_panel(input);
+        turn_by_mouse(input);
         for (const Command& command : input.commands) obey(command);
-        const VkExtent2D extent = window_.extent();
         const Clock::time_point now = Clock::now();
         const double seconds = std::chrono::duration<double>(now - last_step_).count();
         last_step_ = now;
-        stale_ |= state_.apply(input, seconds, aspect_of(extent)) || input.exposed ||
-                  extent.width != extent_.width || extent.height != extent_.height;
-        extent_ = extent;
+        stale_ |= state_.apply(input, seconds, aspect_of(extent_)) || extent_changed;
+        unshown_ |= input.exposed;
         // A CPU has better things to do than to draw the same again.
-        const bool drawn = (stale_ || draws_always_) && draw();
+        const bool drawn = (stale_ || unshown_ || panel_shown_ || draws_always_) && draw();
         if (drawn) {
             stale_ = false;
+            unshown_ = false;
         } else {
             presenter_.finish();
         }
-        idle_ = !drawn;
-        title_.update(state_.settings().view, presenter_.gpu_milliseconds());
+        unsettled_ = input.anything ? kFramesToSettle : std::max(unsettled_ - 1, 0);
+        idle_ = !drawn || (panel_shown_ && !draws_always_ && !state_.light_moves() &&
+                           input.direction == glm::vec3(0.0f) && unsettled_ == 0);
+        title_.update(state_.settings().view, presenter_.times().gpu);
+    }
+
+    /// Shows the panel, lets it change the state, and takes out of `input` what was for it.
+    void run_panel(Input& input) {
+        ui_->begin_frame(!turning_);
+        std::erase_if(input.mouse_actions, [&](const MouseAction& action) {
+            return action.pressed && ui_->wants_mouse();
+        });
+        const bool has_focus = ui_->wants_keys();
+        if (has_focus) input.direction = {};
+        if (ui_->wants_text()) input.commands.clear();
+        std::erase_if(input.commands, [&](Command& command) {
+            if (command.kind != CommandKind::save_settings_in_panel) return false;
+            command.kind = CommandKind::save_settings;
+            return !has_focus;
+        });
+        PanelState panel{state_.options(), state_.light_moves()};
+        const std::vector<Command> wishes = draw_panel({.device = device_.properties().deviceName,
+                                                        .bounds = scene_->bounds(),
+                                                        .extent = extent_,
+                                                        .times = presenter_.times(),
+                                                        .counts = presenter_.counts(),
+                                                        .triangles = scene_->triangle_count(),
+                                                        .scene_bytes = scene_->memory_bytes(),
+                                                        .image_bytes = presenter_.memory_bytes(),
+                                                        .message = message_,
+                                                        .message_is_error = message_is_error_,
+                                                        .scale = window_.content_scale()},
+                                                       panel);
+        ui_->end_frame();
+        input.commands.insert(input.commands.end(), wishes.begin(), wishes.end());
+        if (panel.options == state_.options() && panel.light_moves == state_.light_moves()) return;
+        if (panel.options.samples != state_.options().samples) {
+            presenter_.use_samples(static_cast<VkSampleCountFlagBits>(*panel.options.samples));
+        }
+        state_.set(panel.options, panel.light_moves);
+        stale_ = true;
+    }
+
+    void turn_by_mouse(const Input& input) {
+        for (const MouseAction& action : input.mouse_actions) {
+            if (action.button != MouseButton::right) continue;
+            turning_ = action.pressed;
+            if (turning_ && panel_shown_) ui_->drop_focus();
+        }
+        window_.hide_cursor(turning_);
     }
 
     void obey(const Command& command) {
         switch (command.kind) {
+            case CommandKind::toggle_panel:
+                toggle_panel();
+                break;
             case CommandKind::reload_shaders:
                 reload_shaders();
                 break;
-            case CommandKind::save_screenshot:
-                if (!presenter_.can_read()) {
-                    report("no screenshot: the device cannot read what a window shows");
+            case CommandKind::save_picture:
+                wanted_ = Shot::picture;
+                unshown_ = true;
+                break;
+            case CommandKind::save_window:
+                if (!presenter_.can_read_window()) {
+                    report("no picture: the device cannot read what a window shows");
                     break;
                 }
-                screenshot_wanted_ = true;
-                stale_ = true;
+                wanted_ = Shot::window;
+                unshown_ = true;
+                break;
+            case CommandKind::save_settings:
+                save_settings();
+                break;
+            case CommandKind::copy_camera:
+                window_.copy(camera_flags(state_.options()));
+                tell(camera_flags(state_.options()), "copied the camera");
                 break;
             case CommandKind::end:
                 ended_ = true;
@@ -130,52 +221,136 @@ class Session {
         }
     }
 
+    void toggle_panel() {
+        if (!ui_) {
+            ui_.emplace(window_.handle(), instance_, device_, presenter_.format(),
+                        Presenter::kSlots, window_.content_scale());
+        }
+        panel_shown_ = !panel_shown_;
+        unshown_ = true;
+        unsettled_ = kFramesToSettle;
+        if (!panel_shown_) return;
+        // What was clicked while it was hidden was not for it.
+        ui_->begin_frame(false);
+        ui_->end_frame();
+        // So that the next frame to be drawn has something to draw.
+        Input nothing;
+        run_panel(nothing);
+    }
+
+    void save_settings() {
+        Options options = state_.options();
+        options.size = {extent_.width, extent_.height};
+        try {
+            const std::string name = new_file_name(".toml");
+            write_config(name, options);
+            tell(name, "saved " + name);
+        } catch (const mesh_format::FileError& error) {
+            report(error.what());
+        }
+    }
+
     void reload_shaders() {
         try {
             presenter_.use_shaders(compile_shaders(sources_).code());
             title_.set_error({});
+            message_.clear();
             stale_ = true;
         } catch (const std::runtime_error& error) {
-            report(error.what());
             // The folders would leave no room in the title.
-            std::string text = error.what();
-            const std::string folder = (sources_ / "").string();
-            if (text.starts_with(folder)) text.erase(0, folder.size());
-            title_.set_error(std::move(text));
+            report(error.what(), (sources_ / "").string());
+        }
+    }
+
+    /// Shows the scene anew when its file has changed; where that is broken the old scene stays.
+    void follow_the_file() {
+        if (seconds_since(last_look_) < kLookSeconds) return;
+        last_look_ = Clock::now();
+        if (!watch_.changed()) return;
+        const std::filesystem::path& path = state_.options().scene;
+        try {
+            auto scene = std::make_unique<Scene>(
+                reload_scene(device_, layouts_, path, texture_settings(state_.options(), device_)));
+            presenter_.finish();
+            scene_ = std::move(scene);
+            state_.set_bounds(scene_->bounds());
+            title_.set_error({});
+            message_ = fmt::format("{} has changed: reloaded", path.filename().string());
+            message_is_error_ = false;
+            stale_ = true;
+        } catch (const std::runtime_error& error) {
+            report(error.what(), (path.parent_path() / "").string());
         }
     }
 
     /// False where nothing can be shown now.
     bool draw() {
-        if (!screenshot_wanted_) return presenter_.show(scene_, state_.settings(), extent_);
+        const FrameSettings settings = state_.settings();
+        const WindowContents contents{*scene_, settings, stale_ || draws_always_,
+                                      panel_shown_ ? &*ui_ : nullptr};
+        if (wanted_ == Shot::none) return presenter_.show(contents, extent_);
         try {
-            const auto picture = presenter_.show_and_read(scene_, state_.settings(), extent_);
+            const auto picture = wanted_ == Shot::picture
+                                     ? presenter_.show_and_read(contents, extent_)
+                                     : presenter_.show_and_read_window(contents, extent_);
             if (!picture) return false;
-            const std::string name = new_screenshot_name();
+            const std::string name = new_file_name(".png");
             write_image(name, picture->extent.width, picture->extent.height, picture->pixels);
-            fmt::print("{}\n", name);
-            std::fflush(stdout);
+            tell(name, "saved " + name);
         } catch (const mesh_format::FileError& error) {
             report(error.what());
         }
-        screenshot_wanted_ = false;
+        wanted_ = Shot::none;
         return true;
     }
 
-    static void report(std::string_view error) { fmt::print(stderr, "cw2: {}\n", error); }
+    /// `line` on standard output, `message` in the panel.
+    void tell(std::string_view line, std::string message) {
+        fmt::print("{}\n", line);
+        std::fflush(stdout);
+        message_ = std::move(message);
+        message_is_error_ = false;
+    }
+
+    /// An error on standard error and, without the folder, in the panel; with a folder in the
+    /// title, too: it lasts until what is read from there is right again.
+    void report(const std::string& error, const std::string& folder = {}) {
+        fmt::print(stderr, "cw2: {}\n", error);
+        message_ = error.starts_with(folder) ? error.substr(folder.size()) : error;
+        message_is_error_ = true;
+        if (!folder.empty()) title_.set_error(message_);
+    }
+
+    static bool same(VkExtent2D a, VkExtent2D b) {
+        return a.width == b.width && a.height == b.height;
+    }
+
+    enum class Shot { none, picture, window };
 
     const std::filesystem::path& sources_;
+    const Instance& instance_;
+    const Device& device_;
     bool draws_always_;
     Window& window_;
-    Presenter& presenter_;
-    const Scene& scene_;
+    Layouts layouts_;
+    FileWatch watch_;
+    std::unique_ptr<Scene> scene_;
+    Presenter presenter_;
+    std::optional<UiPass> ui_;  ///< from when the panel is first shown
     ViewerState state_;
     Title title_;
+    std::string message_;
+    bool message_is_error_ = false;
     VkExtent2D extent_{};  ///< of the window at the last step
     Clock::time_point last_step_ = Clock::now();
-    bool stale_ = true;  ///< the picture is not the one that should be seen
-    bool screenshot_wanted_ = false;
-    bool idle_ = false;  ///< nothing was drawn in the last step
+    Clock::time_point last_look_ = Clock::now();
+    bool panel_shown_ = false;
+    bool turning_ = false;  ///< the camera, by the mouse
+    bool stale_ = true;     ///< the picture is not the one that should be seen
+    bool unshown_ = true;   ///< the window does not show what it should
+    Shot wanted_ = Shot::none;
+    int unsettled_ = 0;  ///< frames of the panel until it shows what the last events did
+    bool idle_ = false;  ///< nothing happens until something is done
     bool ended_ = false;
 };
 
@@ -189,13 +364,8 @@ int run_window(const Options& options, const std::filesystem::path& sources) {
         const SurfaceHandle surface = window.make_surface(instance);
         const Device device(instance, options.device, surface.get());
         require_size(options, device);
-        const Layouts layouts(device);
-        const Scene scene =
-            load_scene(device, layouts, options.scene, texture_settings(options, device));
-        const std::uint32_t samples = options.samples.value_or(device.is_cpu() ? 1 : 4);
-        Presenter presenter(device, surface.get(), layouts, built_in_shaders(),
-                            static_cast<VkSampleCountFlagBits>(samples));
-        Session session(options, sources, device, window, presenter, scene);
+        Session session(resolved(options, device), sources, instance, device, window,
+                        surface.get());
         window.show();
         session.run();
     }

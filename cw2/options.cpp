@@ -126,7 +126,7 @@ FrameSettings frame_settings(const Options& options, const Bounds& bounds, float
     if (options.split) settings.split = {side_of(options.split->back()), options.divider};
     settings.exposure = options.exposure;
     settings.false_color = options.false_color;
-    const float fov = options.vertical_fov.value_or(60.0f) * kRadiansPerDegree;
+    const float fov = options.vertical_fov.value_or(kVerticalFov) * kRadiansPerDegree;
     settings.camera = default_camera(bounds, fov, aspect);
     settings.camera.position = options.camera_position.value_or(settings.camera.position);
     settings.camera.target = options.camera_target.value_or(settings.camera.target);

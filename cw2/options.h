@@ -23,6 +23,8 @@ struct PictureSize {
     bool operator==(const PictureSize&) const = default;
 };
 
+inline constexpr float kVerticalFov = 60.0f;  ///< degrees, where nobody asks for another
+
 struct Options {
     std::filesystem::path scene;
     std::optional<std::filesystem::path> output;  ///< none: open a window
@@ -35,7 +37,7 @@ struct Options {
     std::optional<std::uint32_t> samples;  ///< 1 or 4; none: by the device and the output
     std::optional<glm::vec3> camera_position;
     std::optional<glm::vec3> camera_target;
-    std::optional<float> vertical_fov;  ///< degrees, in (0, 180); none: 60
+    std::optional<float> vertical_fov;  ///< degrees, in (0, 180); none: kVerticalFov
     std::optional<glm::vec3> light_position;
     std::optional<glm::vec3> light_color;  ///< none: 1, 1, 1
     glm::vec3 ambient{0.02f};

@@ -135,8 +135,16 @@ Pipelines::Pipelines(const Device& device, const Layouts& layouts, const ShaderC
 
 VkPipeline Pipelines::get(const PipelineKey& key) {
     const auto [entry, is_new] = pipelines_.try_emplace(key);
-    if (is_new) entry->second = build(key);
+    if (is_new) {
+        entry->second = build(key);
+        ++built_;
+    }
     return entry->second.get();
+}
+
+void Pipelines::use_formats(const AttachmentFormats& formats) {
+    formats_ = formats;
+    pipelines_.clear();
 }
 
 Pipeline Pipelines::build(const PipelineKey& key) const {

@@ -79,6 +79,11 @@ class Pipelines {
 
     /// The pipeline for `key`, built when it is first asked for. The cull mode is dynamic.
     VkPipeline get(const PipelineKey& key);
+    /// How many were built so far.
+    std::size_t built() const { return built_; }
+
+    /// From now on for these attachments. What get() gave is destroyed.
+    void use_formats(const AttachmentFormats& formats);
 
  private:
     Pipeline build(const PipelineKey& key) const;
@@ -90,6 +95,7 @@ class Pipelines {
     ShaderModule opaque_fragment_;
     ShaderModule alpha_mask_fragment_;
     std::map<PipelineKey, Pipeline> pipelines_;
+    std::size_t built_ = 0;
 };
 
 }  // namespace cw2

@@ -1,5 +1,6 @@
 #include "cw2/presenter.h"
 
+#include <chrono>
 #include <utility>
 
 namespace cw2 {
@@ -20,11 +21,19 @@ void swap_red_and_blue(std::span<std::byte> pixels) {
 // Presenting needs no access of ours; the semaphore it waits for makes the image visible to it.
 constexpr ImageUse kPresented{VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, VK_PIPELINE_STAGE_2_NONE,
                               VK_ACCESS_2_NONE};
-constexpr ImageUse kCopied{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
-                           VK_ACCESS_2_TRANSFER_READ_BIT};
+/// An image of the swapchain, whose availability the copy waits for; its old contents are lost.
+constexpr ImageUse kAcquired{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_COPY_BIT,
+                             VK_ACCESS_2_NONE};
+constexpr ImageUse kCopiedFrom{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
+                               VK_ACCESS_2_TRANSFER_READ_BIT};
+constexpr ImageUse kCopiedTo{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
+                             VK_ACCESS_2_TRANSFER_WRITE_BIT};
 /// Of the latest frame in the smoothed time.
 constexpr double kWeightOfLatest = 0.3;
-constexpr VkPipelineStageFlags2 kDrawingStage = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+
+std::optional<double> smoothed(std::optional<double> mean, std::optional<double> latest) {
+    return mean && latest ? *mean + kWeightOfLatest * (*latest - *mean) : latest;
+}
 
 }  // namespace
 
@@ -33,8 +42,7 @@ Presenter::Presenter(const Device& device, VkSurfaceKHR surface, const Layouts& 
     : device_(device),
       swapchain_(device, surface),
       pool_(make_command_pool(device)),
-      renderer_(device, layouts, code, swapchain_.format(), samples,
-                static_cast<std::uint32_t>(slots_.size())) {
+      renderer_(device, layouts, code, swapchain_.format(), samples, kSlots) {
     for (Slot& slot : slots_) {
         slot.commands = allocate_commands(device, pool_.get());
         slot.available = make_semaphore(device);
@@ -46,25 +54,46 @@ Presenter::~Presenter() {
     vkDeviceWaitIdle(device_.get());
 }
 
-bool Presenter::show(const Scene& scene, const FrameSettings& settings, VkExtent2D window) {
-    return draw(scene, settings, window, nullptr);
+bool Presenter::show(const WindowContents& contents, VkExtent2D window) {
+    return draw(contents, window, Read::nothing, nullptr);
 }
 
-std::optional<Picture> Presenter::show_and_read(const Scene& scene, const FrameSettings& settings,
-                                                VkExtent2D window) {
+std::optional<Picture> Presenter::show_and_read(const WindowContents& contents, VkExtent2D window) {
+    return draw_and_read(contents, window, Read::picture);
+}
+
+std::optional<Picture> Presenter::show_and_read_window(const WindowContents& contents,
+                                                       VkExtent2D window) {
+    return draw_and_read(contents, window, Read::window);
+}
+
+std::optional<Picture> Presenter::draw_and_read(const WindowContents& contents, VkExtent2D window,
+                                                Read what) {
     Buffer pixels;
-    if (!draw(scene, settings, window, &pixels)) return std::nullopt;
+    if (!draw(contents, window, what, &pixels)) return std::nullopt;
     finish();
     Picture picture{swapchain_.extent(), {pixels.mapped.begin(), pixels.mapped.end()}};
     if (swapchain_.format() == VK_FORMAT_B8G8R8A8_SRGB) swap_red_and_blue(picture.pixels);
     return picture;
 }
 
-bool Presenter::draw(const Scene& scene, const FrameSettings& settings, VkExtent2D window,
-                     Buffer* pixels) {
-    Slot& slot = slots_[next_slot_];
+void Presenter::fit_picture() {
+    const VkExtent2D extent = swapchain_.extent();
+    if (extent.width == picture_extent_.width && extent.height == picture_extent_.height) return;
+    finish();
+    picture_ = make_image(
+        device_, {.format = swapchain_.format(),
+                  .extent = extent,
+                  .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    picture_extent_ = extent;
+    has_picture_ = false;
+}
+
+bool Presenter::draw(const WindowContents& contents, VkExtent2D window, Read what, Buffer* pixels) {
     wait_for(next_slot_);
     if (!swapchain_.fit(window)) return false;
+    fit_picture();
+    Slot& slot = slots_[next_slot_];
     const std::optional<std::uint32_t> image = swapchain_.acquire(slot.available.get());
     if (!image) return false;
     if (pixels != nullptr) {
@@ -72,37 +101,72 @@ bool Presenter::draw(const Scene& scene, const FrameSettings& settings, VkExtent
         *pixels = make_buffer(device_, VkDeviceSize{extent.width} * extent.height * 4,
                               VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::readback);
     }
-    record(next_slot_, *image, scene, settings, pixels);
+    const auto start = std::chrono::steady_clock::now();
+    record(next_slot_, *image, contents, what, pixels);
     submit(slot, *image);
+    slot.cpu =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     slot.in_flight = true;
-    next_slot_ = (next_slot_ + 1) % static_cast<std::uint32_t>(slots_.size());
+    next_slot_ = (next_slot_ + 1) % kSlots;
     swapchain_.present(*image);
     return true;
 }
 
-void Presenter::record(std::uint32_t slot, std::uint32_t image, const Scene& scene,
-                       const FrameSettings& settings, const Buffer* pixels) {
+void Presenter::record(std::uint32_t slot, std::uint32_t image, const WindowContents& contents,
+                       Read what, const Buffer* pixels) {
     const VkCommandBuffer commands = slots_[slot].commands;
     begin_commands(commands);
-    renderer_.record(commands, slot, scene,
-                     {.image = swapchain_.image(image),
-                      .view = swapchain_.view(image),
-                      .extent = swapchain_.extent(),
-                      .available_at = kDrawingStage,
-                      .after = pixels != nullptr ? kCopied : kPresented},
-                     settings);
-    if (pixels != nullptr) {
-        read_back(commands, swapchain_.image(image), swapchain_.extent(), *pixels);
-        image_barrier(commands, swapchain_.image(image), VK_IMAGE_ASPECT_COLOR_BIT, kCopied,
-                      kPresented);
+    slots_[slot].draws_scene = contents.redraw || !has_picture_;
+    if (slots_[slot].draws_scene) {
+        renderer_.record(commands, slot, contents.scene,
+                         {.image = picture_.handle.get(),
+                          .view = picture_.view.get(),
+                          .extent = picture_extent_,
+                          .available_at = kCopiedFrom.stages,
+                          .after = kCopiedFrom},
+                         contents.settings);
+        slots_[slot].builds_pipelines = renderer_.counts().new_pipelines;
+        has_picture_ = true;
     }
+    if (what == Read::picture) {
+        read_back(commands, picture_.handle.get(), picture_extent_, *pixels);
+    }
+    record_window(slot, image, contents.panel, what == Read::window ? pixels : nullptr);
     check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+}
+
+void Presenter::record_window(std::uint32_t slot, std::uint32_t image, UiPass* panel,
+                              const Buffer* pixels) {
+    const VkCommandBuffer commands = slots_[slot].commands;
+    const VkImage target = swapchain_.image(image);
+    const auto barrier = [&](const ImageUse& before, const ImageUse& after) {
+        image_barrier(commands, target, VK_IMAGE_ASPECT_COLOR_BIT, before, after);
+    };
+    barrier(kAcquired, kCopiedTo);
+    const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    const VkImageCopy copy{.srcSubresource = layers,
+                           .dstSubresource = layers,
+                           .extent = {picture_extent_.width, picture_extent_.height, 1}};
+    vkCmdCopyImage(commands, picture_.handle.get(), kCopiedFrom.layout, target, kCopiedTo.layout, 1,
+                   &copy);
+    ImageUse last = kCopiedTo;
+    if (panel != nullptr) {
+        barrier(last, kColorAttachmentUse);
+        panel->record(commands, slot, swapchain_.view(image), swapchain_.extent());
+        last = kColorAttachmentUse;
+    }
+    if (pixels != nullptr) {
+        barrier(last, kCopiedFrom);
+        read_back(commands, target, swapchain_.extent(), *pixels);
+        last = kCopiedFrom;
+    }
+    barrier(last, kPresented);
 }
 
 void Presenter::submit(const Slot& slot, std::uint32_t image) const {
     const VkSemaphoreSubmitInfo available{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
                                           .semaphore = slot.available.get(),
-                                          .stageMask = kDrawingStage};
+                                          .stageMask = VK_PIPELINE_STAGE_2_COPY_BIT};
     const VkSemaphoreSubmitInfo rendered{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
                                          .semaphore = swapchain_.rendered(image),
                                          .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
@@ -125,22 +189,29 @@ void Presenter::wait_for(std::uint32_t index) {
     check(vkWaitForFences(device_.get(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
     check(vkResetFences(device_.get(), 1, &fence), "vkResetFences");
     slot.in_flight = false;
-    if (const std::optional<double> latest = renderer_.gpu_milliseconds(index)) {
-        const double mean = gpu_milliseconds_.value_or(*latest);
-        gpu_milliseconds_ = mean + kWeightOfLatest * (*latest - mean);
-    }
+    if (slot.draws_scene) take_times(slot, renderer_.gpu_milliseconds(index));
+}
+
+void Presenter::take_times(const Slot& slot, std::optional<double> gpu) {
+    if (slot.builds_pipelines && !times_are_cold_) return;
+    const FrameTimes before = times_are_cold_ ? FrameTimes{} : times_;
+    times_ = {smoothed(before.cpu, slot.cpu), smoothed(before.gpu, gpu)};
+    times_are_cold_ = slot.builds_pipelines;
 }
 
 void Presenter::finish() {
     // The slot that is next is the one that was drawn into longest ago.
-    for (std::uint32_t i = 0; i < slots_.size(); ++i) {
-        wait_for((next_slot_ + i) % static_cast<std::uint32_t>(slots_.size()));
-    }
+    for (std::uint32_t i = 0; i < kSlots; ++i) wait_for((next_slot_ + i) % kSlots);
 }
 
 void Presenter::use_shaders(const ShaderCode& code) {
     finish();
     renderer_.use_shaders(code);
+}
+
+void Presenter::use_samples(VkSampleCountFlagBits samples) {
+    finish();
+    renderer_.use_samples(samples);
 }
 
 }  // namespace cw2

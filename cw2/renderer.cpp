@@ -14,10 +14,6 @@ namespace {
 
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
-constexpr ImageUse kColorAttachmentUse{
-    VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT};
-
 constexpr ImageUse kDepthAttachmentUse{
     VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
     VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
@@ -144,6 +140,17 @@ void Renderer::use_shaders(const ShaderCode& code) {
     pipelines_ = Pipelines(device_, layouts_, code, formats_);
 }
 
+void Renderer::use_samples(VkSampleCountFlagBits samples) {
+    if (samples == formats_.samples) return;
+    require_samples(device_, formats_.color, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, samples);
+    require_samples(device_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, samples);
+    formats_.samples = samples;
+    pipelines_.use_formats(formats_);
+    depth_ = {};
+    multisampled_ = {};
+    extent_ = {};
+}
+
 void Renderer::resize(VkExtent2D extent) {
     if (extent.width == extent_.width && extent.height == extent_.height) return;
     // A frame of the old size may still be in flight.
@@ -264,6 +271,8 @@ void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set,
             bound_draw = &draw;
         }
         vkCmdDrawIndexed(commands, chunk.index_count, 1, chunk.first_index, 0, 0);
+        counts_.triangles += chunk.index_count / 3;
+        ++counts_.draws;
     }
 }
 
@@ -275,6 +284,8 @@ void Renderer::write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 s
 void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
                       const FrameTarget& target, const FrameSettings& settings) {
     resize(target.extent);
+    counts_ = {};
+    const std::size_t built_before = pipelines_.built();
     const interop::SceneUniforms uniforms = scene_uniforms(scene, target.extent, settings);
     std::memcpy(slots_[slot].uniforms.mapped.data(), &uniforms, sizeof uniforms);
     find_visible(scene.chunks(), scene.draws(), uniforms.projCam, settings.camera.position,
@@ -284,6 +295,7 @@ void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene&
     begin_attachments(commands, target, settings);
     draw_sides(commands, slots_[slot].set, scene, target.extent, settings);
     vkCmdEndRendering(commands);
+    counts_.new_pipelines = pipelines_.built() != built_before;
     write_timestamp(commands, VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 2 * slot + 1);
     // Resolving, too, is a colour attachment write.
     image_barrier(commands, target.image, VK_IMAGE_ASPECT_COLOR_BIT, kColorAttachmentUse,

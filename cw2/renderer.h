@@ -57,6 +57,13 @@ struct FrameSettings : Side {
     std::optional<FalseColor> false_color;  ///< in place of the exposure
 };
 
+/// What is left of a scene after culling.
+struct FrameCounts {
+    std::uint64_t triangles = 0;
+    std::uint32_t draws = 0;     ///< draw calls
+    bool new_pipelines = false;  ///< some were built, and compiled when they first drew
+};
+
 class Renderer {
  public:
     /// Renders to targets of `color_format` with `samples` a pixel. `slots` frames may be in
@@ -72,6 +79,17 @@ class Renderer {
     /// From now on draws with these shaders. No frame may be in flight. Throws VulkanError, and
     /// keeps the old ones.
     void use_shaders(const ShaderCode& code);
+
+    /// From now on draws with that many samples a pixel. No frame may be in flight. Throws
+    /// VulkanError, and keeps the old number.
+    void use_samples(VkSampleCountFlagBits samples);
+
+    /// What the last frame recorded was made of.
+    const FrameCounts& counts() const { return counts_; }
+    /// Device memory of the images that are drawn into beside the target.
+    VkDeviceSize memory_bytes() const {
+        return depth_.memory.bytes() + multisampled_.memory.bytes();
+    }
 
     /// Device time of the slot's last frame, once it is done; nothing where the device has no
     /// timestamps.
@@ -102,6 +120,7 @@ class Renderer {
     std::vector<Slot> slots_;
     QueryPool timestamps_;                ///< two a slot; empty where the device has none
     std::vector<std::uint32_t> visible_;  ///< chunks of the frame at hand
+    FrameCounts counts_;
     VkExtent2D extent_{};
     Image depth_;
     Image multisampled_;  ///< empty with one sample a pixel

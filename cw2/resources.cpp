@@ -41,7 +41,7 @@ Memory allocate(const Device& device, const VkMemoryRequirements& requirements, 
                                     .memoryTypeIndex = type};
     VkDeviceMemory memory = VK_NULL_HANDLE;
     check(vkAllocateMemory(device.get(), &info, nullptr, &memory), "vkAllocateMemory");
-    return {device.get(), memory};
+    return {device.get(), memory, requirements.size};
 }
 
 VkImageAspectFlags aspect_of(VkFormat format) {

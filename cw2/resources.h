@@ -58,6 +58,10 @@ struct ImageUse {
     VkPipelineStageFlags2 stages;
     VkAccessFlags2 access;
 };
+inline constexpr ImageUse kColorAttachmentUse{
+    VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT};
+
 void image_barrier(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect,
                    const ImageUse& before, const ImageUse& after);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "cw2/decode.h"
@@ -73,7 +74,7 @@ std::vector<Memory> bind_memory(const Device& device, const std::vector<VkImage>
                                             .memoryTypeIndex = block_type};
             VkDeviceMemory memory = VK_NULL_HANDLE;
             check(vkAllocateMemory(device.get(), &info, nullptr, &memory), "vkAllocateMemory");
-            blocks.emplace_back(device.get(), memory);
+            blocks.emplace_back(device.get(), memory, block_size);
         }
         check(vkBindImageMemory(device.get(), image, blocks.back().get(), used),
               "vkBindImageMemory");
@@ -268,6 +269,12 @@ void Scene::write_material_set(const Device& device, VkDescriptorSet set,
                            nullptr);
 }
 
+VkDeviceSize Scene::memory_bytes() const {
+    VkDeviceSize bytes = vertices_.memory.bytes() + indices_.memory.bytes();
+    for (const Memory& memory : texture_memory_) bytes += memory.bytes();
+    return bytes;
+}
+
 std::uint64_t Scene::triangle_count() const {
     std::uint64_t count = 0;
     for (const SceneChunk& chunk : chunks_) count += chunk.index_count / 3;
@@ -285,20 +292,41 @@ mesh_format::MappedFile open_scene(const std::filesystem::path& path) {
     return file;
 }
 
-Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
-                 const TextureSettings& settings) {
-    const mesh_format::MappedFile file = open_scene(path);
-    Document document = mesh_format::parse(file.bytes(), path.string());
+namespace {
+
+Scene scene_of(const Device& device, const Layouts& layouts, std::span<const std::byte> bytes,
+               const std::string& name, const TextureSettings& settings) {
+    Document document = mesh_format::parse(bytes, name);
     DecodedGeometry decoded;
     if (document.is_encoded()) {
-        decoded = decode(document, path.string());
+        decoded = decode(document, name);
         document.vertices = decoded.vertices;
         document.indices = decoded.indices;
         document.encoded_vertices = {};
         document.encoded_indices = {};
-        mesh_format::check(document, path.string());
+        mesh_format::check(document, name);
     }
     return {device, layouts, document, settings};
+}
+
+}  // namespace
+
+Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
+                 const TextureSettings& settings) {
+    const mesh_format::MappedFile file = open_scene(path);
+    return scene_of(device, layouts, file.bytes(), path.string(), settings);
+}
+
+Scene reload_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
+                   const TextureSettings& settings) {
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    const auto size = static_cast<std::streamoff>(file.tellg());
+    std::vector<std::byte> bytes(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)));
+    file.seekg(0);
+    if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) {
+        throw mesh_format::FileError(fmt::format("{}: cannot be read", path.string()));
+    }
+    return scene_of(device, layouts, bytes, path.string(), settings);
 }
 
 }  // namespace cw2

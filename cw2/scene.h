@@ -58,6 +58,8 @@ class Scene {
     VkBuffer vertices() const { return vertices_.handle.get(); }
     VkBuffer indices() const { return indices_.handle.get(); }
     std::uint64_t triangle_count() const;
+    /// Device memory that geometry and textures take.
+    VkDeviceSize memory_bytes() const;
 
  private:
     struct Texture {
@@ -93,5 +95,10 @@ mesh_format::MappedFile open_scene(const std::filesystem::path& path);
 /// Reads, checks and uploads a .cw2mesh file. Throws mesh_format::FileError or VulkanError.
 Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
                  const TextureSettings& settings);
+
+/// The same for a file that somebody may be writing: mapped bytes that are cut off would end the
+/// process, so these are read.
+Scene reload_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
+                   const TextureSettings& settings);
 
 }  // namespace cw2

@@ -66,7 +66,12 @@ Swapchain::Swapchain(const Device& device, VkSurfaceKHR surface)
       surface_(surface),
       format_(srgb_format(device, surface)),
       readable_(capabilities(device, surface).supportedUsageFlags &
-                VK_IMAGE_USAGE_TRANSFER_SRC_BIT) {}
+                VK_IMAGE_USAGE_TRANSFER_SRC_BIT) {
+    if (!(capabilities(device, surface).supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT)) {
+        throw VulkanError(fmt::format("device '{}' cannot copy a picture into this window",
+                                      device.properties().deviceName));
+    }
+}
 
 bool Swapchain::fit(VkExtent2D window) {
     if (window.width == 0 || window.height == 0) return false;
@@ -92,7 +97,7 @@ void Swapchain::make(const VkSurfaceCapabilitiesKHR& surface, VkExtent2D extent)
     info.imageColorSpace = format_.colorSpace;
     info.imageExtent = extent;
     info.imageArrayLayers = 1;
-    info.imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    info.imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     if (readable_) info.imageUsage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     info.preTransform = surface.currentTransform;
     info.compositeAlpha = composite_alpha(surface.supportedCompositeAlpha);

@@ -15,7 +15,7 @@ namespace cw2 {
 class Swapchain {
  public:
     /// No images yet. `device` and `surface` must outlive this. Throws VulkanError where the
-    /// surface has no sRGB format.
+    /// surface has no sRGB format, or its images cannot be copied to.
     Swapchain(const Device& device, VkSurfaceKHR surface);
 
     /// Makes the images fit a window of this size where they do not, once the device is idle.

@@ -8,6 +8,8 @@
 
 namespace cw2 {
 
+/// The present state is a value of Options, with camera and light spelt out: what draws the same
+/// picture into a file.
 class ViewerState {
  public:
     /// Shows what `options` ask for; the light stands still. `aspect` is the window's
@@ -20,14 +22,21 @@ class ViewerState {
 
     FrameSettings settings() const;
 
+    const Options& options() const { return options_; }
+    bool light_moves() const { return light_moves_; }
+    /// Takes over what a panel has changed. Camera and light must still be spelt out.
+    void set(const Options& options, bool light_moves);
+
+    /// The scene is another now; camera and light stay where they are.
+    void set_bounds(const Bounds& bounds);
+
  private:
     bool apply(const Command& command, float aspect);
     bool fly(const Input& input, float seconds);
 
-    Options options_;
+    Options start_;
     Bounds bounds_;
-    FrameSettings settings_;  ///< with the light at the start of its orbit
-    double light_seconds_;    ///< on its orbit
+    Options options_;
     bool light_moves_ = false;
     bool flies_ = false;  ///< keys that move the camera were held at the last call
 };

@@ -33,7 +33,6 @@ class DeviceHandle {
     T handle_ = VK_NULL_HANDLE;
 };
 
-using Memory = DeviceHandle<VkDeviceMemory, vkFreeMemory>;
 using BufferHandle = DeviceHandle<VkBuffer, vkDestroyBuffer>;
 using ImageHandle = DeviceHandle<VkImage, vkDestroyImage>;
 using ImageView = DeviceHandle<VkImageView, vkDestroyImageView>;
@@ -47,7 +46,24 @@ using CommandPool = DeviceHandle<VkCommandPool, vkDestroyCommandPool>;
 using Fence = DeviceHandle<VkFence, vkDestroyFence>;
 using Semaphore = DeviceHandle<VkSemaphore, vkDestroySemaphore>;
 using QueryPool = DeviceHandle<VkQueryPool, vkDestroyQueryPool>;
+using RenderPass = DeviceHandle<VkRenderPass, vkDestroyRenderPass>;
+using Framebuffer = DeviceHandle<VkFramebuffer, vkDestroyFramebuffer>;
 using SwapchainHandle = DeviceHandle<VkSwapchainKHR, vkDestroySwapchainKHR>;
+
+/// Owns device memory and knows its size.
+class Memory {
+ public:
+    Memory() = default;
+    Memory(VkDevice device, VkDeviceMemory memory, VkDeviceSize bytes)
+        : handle_(device, memory), bytes_(bytes) {}
+
+    VkDeviceMemory get() const { return handle_.get(); }
+    VkDeviceSize bytes() const { return bytes_; }
+
+ private:
+    DeviceHandle<VkDeviceMemory, vkFreeMemory> handle_;
+    VkDeviceSize bytes_ = 0;
+};
 
 /// Owns what is destroyed by itself alone (instance, device).
 template <typename T, void(VKAPI_PTR* Destroy)(T, const VkAllocationCallbacks*)>

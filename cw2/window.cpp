@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -23,10 +24,15 @@ std::optional<Command> command_of(int key, int modifiers) {
     switch (key) {
         case GLFW_KEY_ESCAPE:
             return Command{CommandKind::end};
+        case GLFW_KEY_F2:
+            return Command{CommandKind::save_settings};
         case GLFW_KEY_F5:
             return Command{CommandKind::reload_shaders};
         case GLFW_KEY_F12:
-            return Command{CommandKind::save_screenshot};
+            return Command{modifiers & GLFW_MOD_SHIFT ? CommandKind::save_window
+                                                      : CommandKind::save_picture};
+        case GLFW_KEY_TAB:
+            return Command{CommandKind::toggle_panel};
         case GLFW_KEY_SPACE:
             return Command{CommandKind::toggle_light};
         default:
@@ -34,9 +40,9 @@ std::optional<Command> command_of(int key, int modifiers) {
     }
     // Other letters with control, alt or super are not ours: they are short cuts elsewhere.
     if (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) {
-        if (key == GLFW_KEY_R && (modifiers & GLFW_MOD_CONTROL)) {
-            return Command{CommandKind::reload_shaders};
-        }
+        if (!(modifiers & GLFW_MOD_CONTROL)) return std::nullopt;
+        if (key == GLFW_KEY_R) return Command{CommandKind::reload_shaders};
+        if (key == GLFW_KEY_C) return Command{CommandKind::copy_camera};
         return std::nullopt;
     }
     if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) {
@@ -52,6 +58,8 @@ std::optional<Command> command_of(int key, int modifiers) {
             return Command{CommandKind::toggle_alpha_mask};
         case GLFW_KEY_R:
             return Command{CommandKind::reset};
+        case GLFW_KEY_S:
+            return Command{CommandKind::save_settings_in_panel};
         default:
             return std::nullopt;
     }
@@ -87,6 +95,8 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
     glfwSetKeyCallback(handle_, on_key);
     glfwSetMouseButtonCallback(handle_, on_button);
     glfwSetCursorPosCallback(handle_, on_cursor);
+    glfwSetCharCallback(handle_, on_character);
+    glfwSetScrollCallback(handle_, on_scroll);
     glfwSetWindowRefreshCallback(handle_, on_refresh);
 }
 
@@ -139,6 +149,9 @@ Input Window::poll(double seconds) {
         glfwPollEvents();
     }
     Input input = std::exchange(input_, {});
+    glm::dvec2 cursor;
+    glfwGetCursorPos(handle_, &cursor.x, &cursor.y);
+    input.cursor = in_pixels(cursor);
     const auto axis = [this](int positive, int negative) {
         // Both are asked, because asking is what lets go of a sticky key.
         const bool forth = held(positive);
@@ -152,29 +165,68 @@ Input Window::poll(double seconds) {
     return input;
 }
 
+void Window::hide_cursor(bool hidden) {
+    if (hidden == cursor_hidden_) return;
+    cursor_hidden_ = hidden;
+    glfwSetInputMode(handle_, GLFW_CURSOR, hidden ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+    glfwGetCursorPos(handle_, &cursor_.x, &cursor_.y);
+}
+
+void Window::copy(const std::string& text) {
+    glfwSetClipboardString(handle_, text.c_str());
+}
+
+float Window::content_scale() const {
+    float x = 1.0f;
+    float y = 1.0f;
+    glfwGetWindowContentScale(handle_, &x, &y);
+    return std::max(x, y);
+}
+
+glm::vec2 Window::in_pixels(const glm::dvec2& cursor) const {
+    int width = 0;
+    int height = 0;
+    glfwGetWindowSize(handle_, &width, &height);
+    const VkExtent2D pixels = extent();
+    if (width == 0 || height == 0) return {0.0f, 0.0f};
+    return glm::vec2(cursor * glm::dvec2(pixels.width, pixels.height) / glm::dvec2(width, height));
+}
+
 Window& Window::of(GLFWwindow* handle) {
     return *static_cast<Window*>(glfwGetWindowUserPointer(handle));
 }
 
 void Window::on_key(GLFWwindow* handle, int key, int, int action, int modifiers) {
+    Input& input = of(handle).input_;
+    input.anything = true;
     if (action != GLFW_PRESS) return;
-    if (const auto command = command_of(key, modifiers))
-        of(handle).input_.commands.push_back(*command);
+    if (const auto command = command_of(key, modifiers)) input.commands.push_back(*command);
+}
+
+void Window::on_character(GLFWwindow* handle, unsigned int) {
+    of(handle).input_.anything = true;
+}
+
+void Window::on_scroll(GLFWwindow* handle, double, double) {
+    of(handle).input_.anything = true;
 }
 
 void Window::on_button(GLFWwindow* handle, int button, int action, int) {
-    if (button != GLFW_MOUSE_BUTTON_RIGHT) return;
     Window& window = of(handle);
-    window.dragging_ = action == GLFW_PRESS;
-    // A disabled cursor is hidden and never meets the screen's edge.
-    glfwSetInputMode(handle, GLFW_CURSOR,
-                     window.dragging_ ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
-    glfwGetCursorPos(handle, &window.cursor_.x, &window.cursor_.y);
+    window.input_.anything = true;
+    if (button != GLFW_MOUSE_BUTTON_LEFT && button != GLFW_MOUSE_BUTTON_RIGHT) return;
+    glm::dvec2 cursor;
+    glfwGetCursorPos(handle, &cursor.x, &cursor.y);
+    window.input_.mouse_actions.push_back(
+        {.button = button == GLFW_MOUSE_BUTTON_LEFT ? MouseButton::left : MouseButton::right,
+         .pressed = action == GLFW_PRESS,
+         .cursor = window.in_pixels(cursor)});
 }
 
 void Window::on_cursor(GLFWwindow* handle, double x, double y) {
     Window& window = of(handle);
-    if (!window.dragging_) return;
+    window.input_.anything = true;
+    if (!window.cursor_hidden_) return;
     window.input_.drag += glm::vec2(glm::dvec2(x, y) - window.cursor_);
     window.cursor_ = {x, y};
 }

@@ -47,6 +47,16 @@ class Window {
 
     /// Gives what the user did since the last call; waits up to `seconds` for an event.
     Input poll(double seconds);
+    /// Hides the cursor, so that it never meets the screen's edge, and measures how it is dragged;
+    /// or shows it again.
+    void hide_cursor(bool hidden);
+
+    /// Puts text into the clipboard.
+    void copy(const std::string& text);
+    /// Pixels that a length of 1 should have on this screen.
+    float content_scale() const;
+    /// For those who extend GLFW.
+    GLFWwindow* handle() const { return handle_; }
 
  private:
     /// GLFW itself; destroyed after the window.
@@ -61,14 +71,17 @@ class Window {
     static void on_key(GLFWwindow* handle, int key, int scancode, int action, int modifiers);
     static void on_button(GLFWwindow* handle, int button, int action, int modifiers);
     static void on_cursor(GLFWwindow* handle, double x, double y);
+    static void on_character(GLFWwindow* handle, unsigned int character);
+    static void on_scroll(GLFWwindow* handle, double x, double y);
     static void on_refresh(GLFWwindow* handle);
     bool held(int key) const;
+    glm::vec2 in_pixels(const glm::dvec2& cursor) const;
 
     Library library_;
     GLFWwindow* handle_ = nullptr;
     Input input_;  ///< collected by the callbacks
-    bool dragging_ = false;
-    glm::dvec2 cursor_{0.0};  ///< while dragging
+    bool cursor_hidden_ = false;
+    glm::dvec2 cursor_{0.0};  ///< screen units, while it is hidden
 };
 
 }  // namespace cw2

@@ -18,7 +18,8 @@ cw2/*                   | mesh-format/* cw2/* shaders/interop.h shaders/false_co
 cw2/*                   | tbb/* CLI/* vulkan/* glslang/* SPIRV/* png.h Imf*.h
 cw2/*                   | meshoptimizer.h zstd.h xxhash.h
 cw2/window*             | GLFW/*
-cw2/ui*                 | imgui*
+cw2/ui_pass.cpp         | imgui.h backends/imgui_impl_*
+cw2/panel.cpp           | imgui.h
 shaders/*               | mesh-format/* shaders/*
 shaders/*.h             | glm/*
 '

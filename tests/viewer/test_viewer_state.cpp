@@ -150,7 +150,9 @@ TEST(ViewerState, APressAfterALongPauseIsNoLeap) {
 TEST(ViewerState, CommandsAboutTheProgramLeaveThePictureAlone) {
     Viewer viewer;
     for (const CommandKind kind :
-         {CommandKind::reload_shaders, CommandKind::save_screenshot, CommandKind::end}) {
+         {CommandKind::toggle_panel, CommandKind::reload_shaders, CommandKind::save_picture,
+          CommandKind::save_window, CommandKind::save_settings, CommandKind::copy_camera,
+          CommandKind::end}) {
         EXPECT_FALSE(viewer.apply(command(kind), 1.0));
     }
 }

@@ -91,11 +91,11 @@ has_lines() {
     [[ $(wc -l <"$1") -ge $2 ]]
 }
 
-# Presses F12; `picture` is then the path of what the window showed.
+# Presses F12, or another key; `picture` is then the path of what the window showed.
 take_picture() {
     local count
     count=$(($(wc -l <"$work/out") + 1))
-    press F12
+    press "${1:-F12}"
     wait_until has_lines "$work/out" $count
     picture=$work/shots/$(tail -n 1 "$work/out")
     [[ -f $picture ]] || fail "$picture was announced and is not there"

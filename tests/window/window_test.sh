@@ -13,6 +13,7 @@ source "${0%/*}/session.sh"
 # What the render tests see the stage with.
 camera=(--camera-position 0.3,1.6,4.3 --camera-target 0,0.75,0 --fov 42 --light-position 2.5,3.5,3)
 options=(--size 256x144 --samples 1 "${camera[@]}")
+large=(--size 640x480 --samples 1 "${camera[@]}")
 
 check_shows_the_headless_picture() {
     open_window "$cw2" "$scene" "${options[@]}"
@@ -137,6 +138,136 @@ check_moves_the_camera() {
     press r
     take_picture
     expect_same "$start" "$picture"
+    close_window
+}
+
+# Presses Shift+F12; `picture` is then the path of all that the window showed.
+take_window_picture() {
+    take_picture shift+F12
+}
+
+window_picture_differs_from() {
+    take_window_picture
+    different "$1" "$picture"
+}
+
+check_shows_and_hides_the_panel() {
+    open_window "$cw2" "$scene" "${large[@]}"
+    take_picture
+    local start=$picture
+    take_window_picture
+    expect_same "$start" "$picture"
+    press Tab
+    take_window_picture
+    expect_different "$start" "$picture"
+    # The panel is no part of the picture.
+    take_picture
+    expect_same "$start" "$picture"
+    expect_headless "${large[@]}"
+    press Tab
+    take_window_picture
+    expect_same "$start" "$picture"
+    close_window
+}
+
+# Presses a key; `saved` is then the path of the config file that was written.
+save_settings() {
+    local count
+    count=$(($(wc -l <"$work/out") + 1))
+    press "$1"
+    wait_until has_lines "$work/out" $count
+    saved=$work/shots/$(tail -n 1 "$work/out")
+    [[ $saved == *.toml && -f $saved ]] || fail "$saved is no file of settings"
+}
+
+check_saves_what_it_shows() {
+    open_window "$cw2" "$scene" "${options[@]}" --roughness 0.4 --background 0.2,0,0.1
+    take_picture
+    local start=$picture
+    press space
+    xdotool keydown w
+    wait_until picture_differs_from "$start"
+    xdotool keyup w
+    press space n 7
+    xdotool windowsize "$window" 300 200
+    wait_until picture_differs_from "$picture"
+    save_settings F2
+    take_picture
+    expect_different "$start" "$picture"
+    expect_headless --config "$saved"
+    local first=$saved
+    save_settings F2
+    [[ $saved != "$first" ]] || fail "a file of settings took the place of another"
+    same "$first" "$saved" || fail "the same state made two files"
+    close_window
+    # A window begins where the other was left.
+    mv "$saved" "$work/saved.toml"
+    open_window "$cw2" --config "$work/saved.toml"
+    take_picture
+    expect_headless --config "$work/saved.toml"
+    close_window
+}
+
+check_gives_keys_to_the_panel_while_it_has_the_focus() {
+    open_window "$cw2" "$scene" "${large[@]}"
+    take_picture
+    local start=$picture
+    press Tab
+    take_window_picture
+    save_settings s
+    xdotool keydown w
+    sleep 0.3
+    take_picture
+    xdotool keyup w
+    expect_same "$start" "$picture"
+    # Between the panel's parts, which gives the keys back.
+    xdotool mousemove --window "$window" 365 240 click 1
+    xdotool keydown w
+    wait_until picture_differs_from "$start"
+    xdotool keyup w
+    close_window
+}
+
+check_reloads_the_scene() {
+    local scene_before=$scene
+    scene=$work/stage.cw2mesh
+    cp "$scene_before" "$scene"
+    open_window "$cw2" "$scene" "${options[@]}"
+    xdotool keydown w
+    take_picture
+    local start=$picture
+    wait_until picture_differs_from "$start"
+    xdotool keyup w
+    press v
+    take_picture
+    start=$picture
+
+    # Half of it, and then something else: a line each, and the picture stays.
+    head -c 2000 "$scene_before" >"$scene"
+    wait_until test -s "$work/err"
+    [[ $(<"$work/err") == "cw2: $scene: "* ]] || fail "no error with the file"
+    wait_until title_has "stage.cw2mesh: "
+    take_picture
+    expect_same "$start" "$picture"
+    : >"$work/err"
+    rm "$scene"
+    sleep 1.5
+    [[ ! -s $work/err ]] || fail "a scene that is gone for a moment is no error"
+
+    "${cw2%/*}/cw2-bake" "${scene_before%/*}/stage_z_up.obj" -o "$scene" --quiet --textures lossless
+    wait_until picture_differs_from "$start"
+    title_has "stage.cw2mesh: " && fail "the error is still in the title"
+    save_settings F2
+    take_picture
+    expect_headless --config "$saved"
+
+    cp "$scene_before" "$scene.new"
+    mv "$scene.new" "$scene"
+    picture_is_as_before() {
+        take_picture
+        same "$start" "$picture"
+    }
+    wait_until picture_is_as_before
     close_window
 }
 

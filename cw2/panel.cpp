@@ -1,0 +1,277 @@
+#include "cw2/panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "cw2/view.h"
+
+namespace cw2 {
+
+namespace {
+
+constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
+constexpr ImGuiColorEditFlags kColor =
+    ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_NoLabel;
+constexpr float kLargest = 1e6f;  // coordinate and colour that can be entered
+
+struct KeyHelp {
+    const char* keys;
+    const char* what;
+};
+constexpr std::array kKeys{
+    KeyHelp{"Tab", "shows and hides this panel"},
+    KeyHelp{"W A S D, E Q", "move the camera, up and down"},
+    KeyHelp{"Shift, Ctrl", "faster, slower"},
+    KeyHelp{"right button", "turns the camera"},
+    KeyHelp{"Space", "light's orbit on and off"},
+    KeyHelp{"1 to 9, V, Shift+V", "views"},
+    KeyHelp{"N, M", "normal maps, alpha masks"},
+    KeyHelp{"R", "resets camera and light"},
+    KeyHelp{"Ctrl+C", "copies the camera as options"},
+    KeyHelp{"F2, S in here", "saves the settings"},
+    KeyHelp{"F12, Shift+F12", "saves the picture, the window"},
+    KeyHelp{"F5, Ctrl+R", "reloads the shaders"},
+    KeyHelp{"Escape", "ends"},
+};
+
+void text(const std::string& words) {
+    ImGui::TextUnformatted(words.data(), words.data() + words.size());
+}
+
+void dim_text(const std::string& words) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    ImGui::PushTextWrapPos(0.0f);
+    text(words);
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
+/// Puts `name` at the left; what follows has the rest of the row.
+void label(const char* name) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(name);
+    ImGui::SameLine(ImGui::GetFontSize() * 7.0f);
+    ImGui::SetNextItemWidth(-1.0f);
+}
+
+/// A row of a table of readings.
+void reading(const char* name, const std::string& value) {
+    ImGui::TextUnformatted(name);
+    ImGui::SameLine(ImGui::GetFontSize() * 7.0f);
+    text(value);
+}
+
+bool section(const char* name, bool open = true) {
+    return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+}
+
+/// A colour that stays finite and not negative.
+void color(const char* name, const char* id, glm::vec3& value) {
+    label(name);
+    glm::vec3 edited = value;
+    if (!ImGui::ColorEdit3(id, glm::value_ptr(edited), kColor)) return;
+    for (int i = 0; i < 3; ++i) {
+        if (std::isfinite(edited[i])) value[i] = std::clamp(edited[i], 0.0f, kLargest);
+    }
+}
+
+void view_section(Options& options) {
+    if (!section("View")) return;
+    label("shows");
+    if (ImGui::BeginCombo("##view", kViewNames[options.view].data(), ImGuiComboFlags_HeightLarge)) {
+        for (View view = 0; view < kViewNames.size(); ++view) {
+            if (ImGui::Selectable(kViewNames[view].data(), view == options.view)) {
+                options.view = view;
+            }
+            ImGui::SameLine(ImGui::GetFontSize() * 9.0f);
+            ImGui::TextDisabled("%s", kViewDescriptions[view].data());
+        }
+        ImGui::EndCombo();
+    }
+    dim_text(std::string(kViewDescriptions[options.view]));
+    label("samples");
+    for (const std::uint32_t samples : {1u, 4u}) {
+        if (ImGui::RadioButton(samples == 1 ? "1 a pixel" : "4", options.samples == samples)) {
+            options.samples = samples;
+        }
+        ImGui::SameLine();
+    }
+    ImGui::NewLine();
+    color("background", "##background", options.background);
+}
+
+void light_section(PanelState& state, const Bounds& bounds) {
+    if (!section("Light")) return;
+    Options& options = state.options;
+    label("position");
+    glm::vec3 position = orbit(*options.light_position, bounds.center, options.time);
+    if (ImGui::DragFloat3("##light", glm::value_ptr(position), 0.005f * bounds.radius, -kLargest,
+                          kLargest, "%.2f", kClamp)) {
+        options.light_position = orbit(position, bounds.center, -options.time);
+    }
+    label("orbit");
+    ImGui::Checkbox("##moves", &state.light_moves);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0f);
+    constexpr double kLongest = 1e6;
+    constexpr double kBack = -kLongest;
+    ImGui::DragScalar("##time", ImGuiDataType_Double, &options.time, 0.01f, &kBack, &kLongest,
+                      "%.2f s of 6.28", kClamp);
+    color("colour", "##color", *options.light_color);
+    color("ambient", "##ambient", options.ambient);
+}
+
+void camera_section(Options& options, std::vector<Command>& commands) {
+    if (!section("Camera")) return;
+    label("field of view");
+    ImGui::SliderFloat("##fov", &*options.vertical_fov, 1.0f, 179.0f, "%.1f\xc2\xb0", kClamp);
+    const auto vector = [](const glm::vec3& v) {
+        return fmt::format("{:.2f}, {:.2f}, {:.2f}", v.x, v.y, v.z);
+    };
+    reading("at", vector(*options.camera_position));
+    reading("towards", vector(*options.camera_target));
+    if (ImGui::Button("Copy as options")) commands.push_back({CommandKind::copy_camera});
+    ImGui::SameLine();
+    if (ImGui::Button("Reset with light")) commands.push_back({CommandKind::reset});
+}
+
+/// A number that is every material's where the box is ticked.
+void override_row(const char* name, const char* id, std::optional<float>& value) {
+    ImGui::PushID(id);
+    label(name);
+    bool overridden = value.has_value();
+    if (ImGui::Checkbox("##on", &overridden)) {
+        value = overridden ? std::optional(0.5f) : std::nullopt;
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0f);
+    if (value) {
+        ImGui::SliderFloat("##value", &*value, 0.0f, 1.0f, "%.3f", kClamp);
+    } else {
+        ImGui::TextDisabled("each its own");
+    }
+    ImGui::PopID();
+}
+
+void material_section(Options& options) {
+    if (!section("Materials")) return;
+    override_row("roughness", "roughness", options.roughness);
+    override_row("metalness", "metalness", options.metalness);
+    label("normal maps");
+    ImGui::Checkbox("##normal_map", &options.normal_map);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0f);
+    ImGui::SliderFloat("##normal_strength", &options.normal_strength, 0.0f, 4.0f, "slopes x %.2f",
+                       kClamp);
+    label("alpha masks");
+    ImGui::Checkbox("##alpha_mask", &options.alpha_mask);
+}
+
+void file_buttons(std::vector<Command>& commands) {
+    const auto button = [&](const char* name, CommandKind kind, const char* tip) {
+        if (ImGui::Button(name)) commands.push_back({kind});
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+    };
+    button("Save settings", CommandKind::save_settings, "for --config; S or F2");
+    ImGui::SameLine();
+    button("Save picture", CommandKind::save_picture, "without the panel; F12");
+    ImGui::SameLine();
+    button("Reload shaders", CommandKind::reload_shaders, "from their sources; F5");
+}
+
+void key_section() {
+    if (!section("Keys", false)) return;
+    for (const KeyHelp& key : kKeys) {
+        ImGui::TextUnformatted(key.keys);
+        ImGui::SameLine(ImGui::GetFontSize() * 10.5f);
+        ImGui::TextDisabled("%s", key.what);
+    }
+}
+
+/// Thousands apart.
+std::string count(std::uint64_t number) {
+    const std::string digits = std::to_string(number);
+    std::string result;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        if (i > 0 && (digits.size() - i) % 3 == 0) result += ' ';
+        result += digits[i];
+    }
+    return result;
+}
+
+std::string milliseconds(const std::optional<double>& time) {
+    return time ? fmt::format("{:.2f} ms", *time) : std::string("-");
+}
+
+void frame_section(const PanelFacts& facts) {
+    if (!section("Frame")) return;
+    dim_text(facts.device);
+    reading("size", fmt::format("{} x {}", facts.extent.width, facts.extent.height));
+    reading("CPU", milliseconds(facts.times.cpu));
+    reading("GPU", milliseconds(facts.times.gpu));
+    reading("triangles",
+            fmt::format("{} of {}", count(facts.counts.triangles), count(facts.triangles)));
+    reading("draws", count(facts.counts.draws));
+    const auto mebibytes = [](std::uint64_t bytes) {
+        return static_cast<double>(bytes) / (1024.0 * 1024.0);
+    };
+    reading("memory", fmt::format("{:.1f} MiB scene", mebibytes(facts.scene_bytes)));
+    reading("", fmt::format("{:.1f} MiB images", mebibytes(facts.image_bytes)));
+}
+
+/// A window of fixed width, as high as it must be, but never higher than the picture.
+void begin_window(const char* name, float left, float width, float scale) {
+    const float margin = 8.0f * scale;
+    const float height = std::max(ImGui::GetIO().DisplaySize.y - 2.0f * margin, 4.0f * margin);
+    ImGui::SetNextWindowPos({left, margin}, ImGuiCond_Appearing);
+    ImGui::SetNextWindowSizeConstraints({width, 0.0f}, {width, height});
+    ImGui::Begin(name, nullptr,
+                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
+}
+
+}  // namespace
+
+std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state) {
+    std::vector<Command> commands;
+    const float margin = 8.0f * facts.scale;
+    const float reading_width = 236.0f * facts.scale;
+    begin_window("Readings", ImGui::GetIO().DisplaySize.x - reading_width - margin, reading_width,
+                 facts.scale);
+    frame_section(facts);
+    ImGui::End();
+
+    begin_window("cw2", margin, 326.0f * facts.scale, facts.scale);
+    view_section(state.options);
+    light_section(state, facts.bounds);
+    camera_section(state.options, commands);
+    material_section(state.options);
+    ImGui::Separator();
+    file_buttons(commands);
+    if (!facts.message.empty()) {
+        if (facts.message_is_error) {
+            ImGui::PushStyleColor(ImGuiCol_Text, {1.0f, 0.25f, 0.15f, 1.0f});
+            ImGui::TextWrapped("%s", facts.message.c_str());
+            ImGui::PopStyleColor();
+        } else {
+            dim_text(facts.message);
+        }
+    }
+    key_section();
+    ImGui::End();
+    return commands;
+}
+
+std::string camera_flags(const Options& options) {
+    const auto vector = [](const glm::vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
+    return fmt::format("--camera-position {} --camera-target {} --fov {}",
+                       vector(*options.camera_position), vector(*options.camera_target),
+                       *options.vertical_fov);
+}
+
+}  // namespace cw2

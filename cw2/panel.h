@@ -1,0 +1,44 @@
+// The widgets over the picture: everything that can be set, and what can be read off. They know
+// only Dear ImGui; call between its NewFrame and Render.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cw2/camera.h"
+#include "cw2/input.h"
+#include "cw2/options.h"
+#include "cw2/presenter.h"
+
+namespace cw2 {
+
+/// What the panel shows and does not change.
+struct PanelFacts {
+    std::string device;
+    Bounds bounds;
+    VkExtent2D extent;  ///< of the picture, pixels
+    FrameTimes times;
+    FrameCounts counts;
+    std::uint64_t triangles;    ///< of the whole scene
+    std::uint64_t scene_bytes;  ///< device memory of geometry and textures
+    std::uint64_t image_bytes;  ///< device memory of what is drawn into
+    std::string message;        ///< the latest; empty for none
+    bool message_is_error;
+    float scale;  ///< pixels of a length of 1
+};
+
+/// What the panel changes.
+struct PanelState {
+    Options options;  ///< with camera, light and samples spelt out, and valid, before and after
+    bool light_moves;
+};
+
+/// Draws all of it; gives the commands of the buttons pressed.
+std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state);
+
+/// The camera as options of the command line.
+std::string camera_flags(const Options& options);
+
+}  // namespace cw2
