@@ -92,10 +92,12 @@ bool read_value(std::string_view text, std::optional<T>& value) {
 // Numbers are written with as many digits as it takes to read the same number again.
 template <typename T>
 requires std::is_arithmetic_v<T> std::string toml_of(T value) {
+    // With a point, since the integer -0 is 0.
+    if constexpr (std::is_floating_point_v<T>) return fmt::format("{:#}", value);
     return fmt::format("{}", value);
 }
 std::string toml_of(const glm::vec3& v) {
-    return fmt::format("[{}, {}, {}]", v.x, v.y, v.z);
+    return fmt::format("[{}, {}, {}]", toml_of(v.x), toml_of(v.y), toml_of(v.z));
 }
 std::string toml_of(const std::string& text) {
     return toml_string(text);
@@ -107,7 +109,8 @@ std::string toml_of(const PictureSize& size) {
     return fmt::format("\"{}x{}\"", size.width, size.height);
 }
 std::string toml_of(const FalseColor& value) {
-    return value.range ? fmt::format("[{}, {}]", value.range->low, value.range->high) : "\"auto\"";
+    if (!value.range) return "\"auto\"";
+    return fmt::format("[{}, {}]", toml_of(value.range->low), toml_of(value.range->high));
 }
 std::string toml_of(const Side& side) {
     return fmt::format("\"{}{}{}\"", kViewNames[side.view], side.normal_map ? "" : kNoNormalMap,

@@ -17,6 +17,7 @@ cw2-bake/image_reader.* | OpenImageIO/*
 cw2/*                   | mesh-format/* cw2/* shaders/interop.h shaders/false_color.h *.vert.h *.frag.h glm/* fmt/*
 cw2/*                   | tbb/* CLI/* vulkan/* glslang/* SPIRV/* png.h Imf*.h
 cw2/*                   | meshoptimizer.h zstd.h xxhash.h
+cw2/config.cpp          | toml++/toml.h
 cw2/window*             | GLFW/*
 cw2/ui_pass.cpp         | imgui.h backends/imgui_impl_*
 cw2/panel.cpp           | imgui.h

@@ -158,12 +158,13 @@ TEST(Config, ReadsWhatPeopleWriteInToml) {
            "camera-position = [ 1.5, # x\n  -2e-1,\n\t3, ]\n"
            "light-position = \"4,5,6\"\n"
            "device=\"\\u00fc \\\"q\\\" \\U0001F600\"\n"
-           "no-normal-map = false\nno-alpha-mask   =   true";
+           "fov = 7_0\nno-normal-map = false\nno-alpha-mask   =   true";
     const auto options = parse({"--config", folder / "a.toml"});
     EXPECT_EQ(options->scene, "C:\\new #1.cw2mesh");
     EXPECT_EQ(options->camera_position, glm::vec3(1.5f, -0.2f, 3.0f));
     EXPECT_EQ(options->light_position, glm::vec3(4.0f, 5.0f, 6.0f));
     EXPECT_EQ(options->device, "\u00fc \"q\" \U0001F600");
+    EXPECT_EQ(options->vertical_fov, 70.0f);
     EXPECT_TRUE(options->normal_map);
     EXPECT_FALSE(options->alpha_mask);
 }
@@ -177,25 +178,24 @@ TEST(Config, WhatMakesNoSenseIsToldWithItsPlace) {
         {"\n\nconfig = 'b.toml'\n", {":3: ", "'config'"}},
         {"fov = 60\nfov = 60\n", {":2: ", "'fov'"}},
         {"fov = 0\n", {":1: fov: ", "'0'"}},
-        {"fov = wide\n", {":1: fov: "}},
-        {"fov = 1_0\n", {":1: fov: ", "'1_0'"}},
+        {"fov = wide\n", {":1: ", "value"}},
         {"fov = nan\n", {":1: fov: "}},
         {"fov = 'nan'\n", {":1: fov: ", "'nan'"}},
-        {"fov =\n", {":1: fov: "}},
-        {"fov\n", {":1: ", "'fov'", "'='"}},
+        {"fov =\n", {":1: ", "value"}},
+        {"fov\n", {":1: ", "'='"}},
         {"fov = 60 70\n", {":1: "}},
         {"= 60\n", {":1: ", "key"}},
         {"view = 'sideways'\n", {":1: view: ", "'sideways'", "--list-views"}},
         {"no-normal-map = 1\n", {":1: no-normal-map: ", "'1'"}},
         {"ambient = [1, 2]\n", {":1: ambient: ", "'1,2'"}},
-        {"ambient = [1, 2, 3\nfov = 60\n", {"ambient: "}},
+        {"ambient = [1, 2, 3\nfov = 60\n", {":2: ", "array"}},
         {"ambient = [1e39, 0, 0]\n", {":1: ambient: "}},
         {"size = '640'\n", {":1: size: ", "'640'"}},
-        {"device = \"abc\nfov = 60\n", {":1: device: "}},
-        {"device = 'abc\n", {":1: device: "}},
-        {"device = \"\\q\"\n", {":1: device: ", "\\q"}},
-        {"device = \"\\uD800\"\n", {":1: device: ", "U+D800"}},
-        {"[camera]\nfov = 60\n", {":1: ", "table"}},
+        {"device = \"abc\nfov = 60\n", {":1: ", "string"}},
+        {"device = 'abc\n", {":1: ", "string"}},
+        {"device = \"\\q\"\n", {":1: ", "\\q"}},
+        {"device = \"\\uD800\"\n", {":1: ", "U+D800"}},
+        {"[camera]\nfov = 60\n", {":1: camera: "}},
     };
     const TemporaryFolder folder;
     const std::string path = folder / "a.toml";
