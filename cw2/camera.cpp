@@ -36,6 +36,14 @@ Camera default_camera(const Bounds& bounds, float vertical_fov, float aspect) {
     return {bounds.center + distance * direction, bounds.center, vertical_fov};
 }
 
+Camera around_target(const Camera& camera, double radians) {
+    const double sine = std::sin(radians);
+    const double cosine = std::cos(radians);
+    const glm::dvec3 arm = glm::dvec3(camera.position) - glm::dvec3(camera.target);
+    const glm::dvec3 turned(cosine * arm.x + sine * arm.z, arm.y, cosine * arm.z - sine * arm.x);
+    return {glm::vec3(glm::dvec3(camera.target) + turned), camera.target, camera.vertical_fov};
+}
+
 glm::mat4 view_from_world(const Camera& camera) {
     const glm::vec3 forward = glm::normalize(camera.target - camera.position);
     const glm::vec3 up =

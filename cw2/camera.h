@@ -34,6 +34,9 @@ struct SceneStart {
 };
 SceneStart start_of(const mesh_format::SceneRecord& scene);
 
+/// The camera after it has gone `radians` around the vertical through its target, x towards -z.
+Camera around_target(const Camera& camera, double radians);
+
 glm::mat4 view_from_world(const Camera& camera);
 
 /// Vulkan's clip space (y down), depth 1 at distance `near`, 0 at infinity.

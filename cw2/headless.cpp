@@ -1,10 +1,14 @@
 #include "cw2/headless.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <future>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "cw2/image_file.h"
@@ -60,7 +64,7 @@ class OffscreenTarget {
         submit_and_wait(device_, commands_);
     }
 
-    std::span<std::byte> pixels() const { return pixels_.mapped; }
+    std::span<const std::byte> pixels() const { return pixels_.mapped; }
 
  private:
     const Device& device_;
@@ -86,23 +90,19 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-void write_stats(const std::filesystem::path& path, const Device& device, const Scene& scene,
-                 const Timings& timings) {
+std::string stats_of(const Device& device, const Scene& scene, const Timings& timings) {
     std::string name;
     for (const char c : std::string_view(device.properties().deviceName)) {
         if (c == '"' || c == '\\') name += '\\';
         name += c;
     }
-    const std::string json = fmt::format(
+    return fmt::format(
         "{{\n  \"device\": \"{}\",\n  \"triangles\": {},\n  \"draws\": {},\n"
         "  \"load_ms\": {:.3f},\n  \"first_frame_ms\": {:.3f},\n  \"save_ms\": {:.3f},\n"
         "  \"bench_frames\": {},\n  \"median_frame_ms\": {:.3f},\n"
         "  \"median_gpu_ms\": {:.3f}\n}}\n",
         name, scene.triangle_count(), scene.draws().size(), timings.load, timings.first_frame,
         timings.save, timings.frames.size(), median(timings.frames), median(timings.gpu_frames));
-    mesh_format::OutputFile file(path);
-    file.write(std::as_bytes(std::span(json)));
-    file.commit();
 }
 
 /// Puts the legend of its false colours onto a PNG's pixels.
@@ -118,18 +118,112 @@ void draw_legends(std::span<std::byte> pixels, const PictureSize& size,
     if (settings.split) draw(settings.split->right.view, end, size.width);
 }
 
-}  // namespace
+/// Saves pictures on a thread of its own, while the next one is drawn.
+class Saver {
+ public:
+    explicit Saver(const PictureSize& size) : size_(size) {}
 
-void render_to_file(const Device& device, const Options& options) {
-    const ImageKind kind = image_kind(*options.output);
-    require_size(options, device);
-    Timings timings;
-    Clock::time_point start = Clock::now();
-    const Layouts layouts(device);
-    const Scene scene =
-        load_scene(device, layouts, options.scene, texture_settings(options, device));
-    timings.load = milliseconds_since(start);
+    /// Throws what the saving of the picture before has thrown.
+    void save(std::filesystem::path path, std::span<const std::byte> pixels,
+              const FrameSettings& settings) {
+        finish();
+        pixels_.assign(pixels.begin(), pixels.end());
+        pending_ = std::async(std::launch::async, [this, settings, path = std::move(path)] {
+            draw_legends(pixels_, size_, settings);
+            write_image(path, size_.width, size_.height, pixels_);
+        });
+    }
+    void finish() {
+        if (pending_.valid()) pending_.get();
+    }
 
+ private:
+    PictureSize size_;
+    std::vector<std::byte> pixels_;
+    std::future<void> pending_;  ///< destroyed first, which waits
+};
+
+/// How far a run of frames has come, as a line that a terminal shows and overwrites.
+class Progress {
+ public:
+    explicit Progress(std::uint32_t count) : count_(count), is_shown_(::isatty(STDERR_FILENO)) {}
+    ~Progress() { clear(); }
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    void show(std::uint32_t done) const {
+        if (!is_shown_) return;
+        constexpr std::uint32_t kCells = 30;
+        const auto cells = static_cast<int>(std::uint64_t{kCells} * done / count_);
+        fmt::print(stderr, "\r[{:#>{}}{:.>{}}] {}/{}, {:.1f} a second\x1b[K", "", cells, "",
+                   static_cast<int>(kCells) - cells, done, count_,
+                   1000.0 * done / milliseconds_since(start_));
+    }
+    void clear() const {
+        if (is_shown_) fmt::print(stderr, "\r\x1b[K");
+    }
+    double milliseconds() const { return milliseconds_since(start_); }
+
+ private:
+    std::uint32_t count_;
+    bool is_shown_;
+    Clock::time_point start_ = Clock::now();
+};
+
+/// A scene on its device, and what draws it into files.
+struct Studio {
+    const Options& options;
+    const Scene& scene;
+    Renderer& renderer;
+    OffscreenTarget& target;
+    Timings& timings;
+
+    void draw_picture(const FrameSettings& settings) {
+        Clock::time_point start = Clock::now();
+        target.render(renderer, scene, settings);
+        timings.first_frame = milliseconds_since(start);
+        start = Clock::now();
+        Saver saver(options.size);
+        saver.save(*options.output, target.pixels(), settings);
+        saver.finish();
+        timings.save = milliseconds_since(start);
+    }
+
+    void draw_turn(const FrameSettings& settings) {
+        const FrameRange& range = *options.frames;
+        const std::string pattern = options.output->string();
+        Saver saver(options.size);
+        const Progress progress(range.size());
+        for (std::uint32_t frame = range.first; frame <= range.last; ++frame) {
+            const FrameSettings now = at_frame(settings, options.orbit.value_or(Orbit::camera),
+                                               frame, range.count, scene.bounds());
+            const Clock::time_point start = Clock::now();
+            target.render(renderer, scene, now);
+            if (frame == range.first) timings.first_frame = milliseconds_since(start);
+            saver.save(frame_name(pattern, frame).value_or(pattern), target.pixels(), now);
+            progress.show(frame - range.first + 1);
+        }
+        saver.finish();
+        progress.clear();
+        fmt::print("{} frames in {:.1f} s, {:.2f} a second\n", range.size(),
+                   1e-3 * progress.milliseconds(), 1e3 * range.size() / progress.milliseconds());
+    }
+
+    void measure(const FrameSettings& settings) {
+        for (std::uint32_t i = 0; i < options.bench_frames; ++i) {
+            const Clock::time_point start = Clock::now();
+            target.render(renderer, scene, settings);
+            timings.frames.push_back(milliseconds_since(start));
+            timings.gpu_frames.push_back(renderer.gpu_milliseconds(0).value_or(0.0));
+        }
+        fmt::print("{} frames of {}x{}: median {:.2f} ms, device {:.2f} ms\n", options.bench_frames,
+                   options.size.width, options.size.height, median(timings.frames),
+                   median(timings.gpu_frames));
+    }
+};
+
+/// What a file of this kind shows at the options' instant.
+FrameSettings settings_for(ImageKind kind, const Options& options, const Scene& scene) {
     const float aspect =
         static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     FrameSettings settings =
@@ -140,31 +234,37 @@ void render_to_file(const Device& device, const Options& options) {
         settings.false_color.reset();
     }
     settings.light.position = orbit(settings.light.position, scene.bounds().center, options.time);
+    return settings;
+}
 
-    start = Clock::now();
+}  // namespace
+
+void render_to_file(const Device& device, const Options& options) {
+    const ImageKind kind = image_kind(*options.output);
+    require_size(options, device);
+    // Made now, so that no picture is there without the statistics that were asked for.
+    std::optional<mesh_format::OutputFile> stats;
+    if (options.stats) stats.emplace(*options.stats);
+
+    Timings timings;
+    Clock::time_point start = Clock::now();
+    const Layouts layouts(device);
+    const Scene scene =
+        load_scene(device, layouts, options.scene, texture_settings(options, device));
+    timings.load = milliseconds_since(start);
+
+    const FrameSettings settings = settings_for(kind, options, scene);
     Renderer renderer(device, layouts, built_in_shaders(), OffscreenTarget::format_of(kind),
                       static_cast<VkSampleCountFlagBits>(options.samples.value_or(4)), 1);
     OffscreenTarget target(device, {options.size.width, options.size.height}, kind);
-    target.render(renderer, scene, settings);
-    timings.first_frame = milliseconds_since(start);
-
-    start = Clock::now();
-    draw_legends(target.pixels(), options.size, settings);
-    write_image(*options.output, options.size.width, options.size.height, target.pixels());
-    timings.save = milliseconds_since(start);
-
-    for (std::uint32_t i = 0; i < options.bench_frames; ++i) {
-        start = Clock::now();
-        target.render(renderer, scene, settings);
-        timings.frames.push_back(milliseconds_since(start));
-        timings.gpu_frames.push_back(renderer.gpu_milliseconds(0).value_or(0.0));
+    Studio studio{options, scene, renderer, target, timings};
+    options.frames ? studio.draw_turn(settings) : studio.draw_picture(settings);
+    if (options.bench_frames > 0) studio.measure(settings);
+    if (stats) {
+        const std::string text = stats_of(device, scene, timings);
+        stats->write(std::as_bytes(std::span(text)));
+        stats->commit();
     }
-    if (options.bench_frames > 0) {
-        fmt::print("{} frames of {}x{}: median {:.2f} ms, device {:.2f} ms\n", options.bench_frames,
-                   options.size.width, options.size.height, median(timings.frames),
-                   median(timings.gpu_frames));
-    }
-    if (options.stats) write_stats(*options.stats, device, scene, timings);
 }
 
 }  // namespace cw2

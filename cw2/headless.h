@@ -1,4 +1,4 @@
-// One picture to a file, with no display and no window system.
+// Pictures to files, with no display and no window system.
 #pragma once
 
 #include "cw2/device.h"
@@ -6,7 +6,8 @@
 
 namespace cw2 {
 
-/// Renders options.scene to options.output. Throws what its parts throw; then no file is written.
+/// Renders options.scene to options.output, or to a file for each of options.frames. Throws what
+/// its parts throw; then the file at hand is not written, and no file of statistics.
 void render_to_file(const Device& device, const Options& options);
 
 }  // namespace cw2

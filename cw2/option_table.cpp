@@ -84,6 +84,17 @@ bool read_value(std::string_view text, std::array<Side, 2>& sides) {
            read_value(text.substr(comma + 1), sides[1]);
 }
 
+bool read_value(std::string_view text, FrameRange& range) {
+    const std::optional<FrameRange> read = frame_range_of(text);
+    range = read.value_or(range);
+    return read.has_value();
+}
+
+bool read_value(std::string_view text, Orbit& orbit) {
+    orbit = text == "light" ? Orbit::light : Orbit::camera;
+    return text == "light" || text == "camera";
+}
+
 template <typename T>
 bool read_value(std::string_view text, std::optional<T>& value) {
     return read_value(text, value.emplace());
@@ -118,6 +129,12 @@ std::string toml_of(const Side& side) {
 }
 std::string toml_of(const std::array<Side, 2>& sides) {
     return fmt::format("[{}, {}]", toml_of(sides[0]), toml_of(sides[1]));
+}
+std::string toml_of(const FrameRange& range) {
+    return fmt::format("\"{}..{}/{}\"", range.first, range.last, range.count);
+}
+std::string toml_of(Orbit orbit) {
+    return orbit == Orbit::light ? "\"light\"" : "\"camera\"";
 }
 template <typename T>
 std::string toml_of(const std::optional<T>& value) {
@@ -228,6 +245,11 @@ std::vector<Setting> all_settings() {
         flag("list-views", "print the views and end", &O::list_views),
         flag("validation", "run Vulkan's validation layers; any message is a failure",
              &O::validation),
+        value("frames", "N|A..B/N",
+              "N pictures of one turn, or those from A to B of 0 to N - 1; %04d in --output is the "
+              "frame's number",
+              &O::frames),
+        value("orbit", "camera|light", "what goes around in --frames [camera]", &O::orbit),
         value("stats", "FILE.json", "write timings and counts as JSON (with --output)", &O::stats),
         value<std::uint32_t>(
             "bench", "FRAMES", "draw N more frames and print their times (with --output)",

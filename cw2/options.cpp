@@ -56,6 +56,22 @@ void apply_config(const std::filesystem::path& path, const std::vector<Setting>&
     }
 }
 
+void require_sense(const Options& options) {
+    if (options.list_devices || options.list_views) return;
+    if (options.scene.empty()) throw UsageError("no scene is given; see --help");
+    if (!options.output && (options.stats || options.bench_frames > 0 || options.frames)) {
+        throw UsageError("--stats, --bench and --frames need --output");
+    }
+    if (!options.frames && options.orbit) throw UsageError("--orbit needs --frames");
+    if (!options.frames) return;
+    if (options.bench_frames > 0) throw UsageError("--bench and --frames exclude each other");
+    if (options.frames->size() > 1 && !frame_name(options.output->string(), 0)) {
+        throw UsageError(
+            fmt::format("--output: '{}' is no pattern for several frames, such as name_%04d.png",
+                        options.output->string()));
+    }
+}
+
 }  // namespace
 
 std::optional<Options> parse_options(int argc, const char* const* argv) {
@@ -79,12 +95,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
         throw UsageError(error.what());
     }
     if (config) apply_config(*config, settings, app, options);
-    if (options.scene.empty() && !options.list_devices && !options.list_views) {
-        throw UsageError("no scene is given; see --help");
-    }
-    if (!options.output && (options.stats || options.bench_frames > 0)) {
-        throw UsageError("--stats and --bench need --output");
-    }
+    require_sense(options);
     return options;
 }
 
@@ -155,7 +166,9 @@ namespace {
 /// from blocks and 2.5 decoded, at 320 x 180 0.8 and 1.0; in between lies the limit.
 bool repays_decoding(const Options& options) {
     constexpr std::uint64_t kSamples = 1'200'000;
-    const bool many = !options.output || options.bench_frames > 0;
+    // Of the whole turn, so that a part of it has the same frames.
+    const bool many = !options.output || options.bench_frames > 0 ||
+                      (options.frames && options.frames->count > 1);
     return many ||
            std::uint64_t{options.size.width} * options.size.height * options.samples.value_or(4) >=
                kSamples;

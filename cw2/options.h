@@ -10,6 +10,7 @@
 
 #include "cw2/camera.h"
 #include "cw2/config.h"
+#include "cw2/frames.h"
 #include "cw2/renderer.h"
 #include "cw2/scene.h"
 #include "cw2/view.h"
@@ -53,6 +54,8 @@ struct Options {
     bool list_devices = false;
     bool list_views = false;
     bool validation = false;
+    std::optional<FrameRange> frames;  ///< a turntable of pictures
+    std::optional<Orbit> orbit;        ///< in `frames`; none: the camera's
     std::optional<std::filesystem::path> stats;
     std::uint32_t bench_frames = 0;  ///< further frames to time
 

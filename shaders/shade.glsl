@@ -61,7 +61,9 @@ vec3 as_color(vec3 direction) { return 0.5 * direction + 0.5; }
 // The linear value that the chosen view shows; `alpha_mask` is what the mask holds here.
 vec3 view_color(float alpha_mask) {
     const Surface surface = surface_at_fragment();
-    const vec3 l = normalize(scene.lightPosition - world_position);
+    // A light on the surface itself is above that point.
+    const vec3 to_light = scene.lightPosition - world_position;
+    const vec3 l = dot(to_light, to_light) > 0.0 ? normalize(to_light) : surface.normal;
     const vec3 v = normalize(scene.cameraPosition - world_position);
     const Brdf brdf = evaluate_brdf(surface, l, v);
     switch (view) {

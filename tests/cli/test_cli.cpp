@@ -172,6 +172,12 @@ TEST_F(Cli, OutputsThatCannotBeWrittenAreRefused) {
                            {output + extension + ": "});
         }
     }
+    // No picture without the statistics that were asked for.
+    expect_refusal("cw2", 1,
+                   {"scene.cw2mesh", "--output", "existing.png", "--stats", "nowhere/s.json"},
+                   {"nowhere/s.json: "});
+    expect_refusal("cw2", 1, {"scene.cw2mesh", "--output", "nowhere/%d.png", "--frames", "3"},
+                   {"nowhere/0.png: "});
     fs::create_directory(here("folder.png"));
     expect_refusal("cw2-bake", 1, {"scene.obj", "-o", "folder"}, {"folder: ", "directory"});
     expect_refusal("cw2", 1, {"scene.cw2mesh", "--output", "folder.png"},
@@ -222,6 +228,15 @@ TEST_F(Cli, Cw2RefusesWrongUsage) {
         {{"--split", "normal,shaded,uv"}, {"--split"}},
         {{"--split", "normal:no-camera,shaded"}, {"--split", "no-camera"}},
         {{"--divider", "1.5"}, {"--divider", "1.5"}},
+        {{"--frames", "0"}, {"--frames", "'0'"}},
+        {{"--frames", "5..3/8"}, {"--frames", "5..3/8"}},
+        {{"--frames", "3..8/8"}, {"--frames", "3..8/8"}},
+        {{"--frames", "1..2"}, {"--frames", "1..2"}},
+        {{"--frames", "-1"}, {"--frames", "-1"}},
+        {{"--frames", "8"}, {"--output", "existing.png", "%04d"}},
+        {{"--frames", "1", "--bench", "2"}, {"--frames", "--bench"}},
+        {{"--frames", "1", "--orbit", "moon"}, {"--orbit", "moon"}},
+        {{"--orbit", "light"}, {"--orbit", "--frames"}},
         {{"another.cw2mesh"}, {"another.cw2mesh"}},
     };
     for (const auto& [options, parts] : table) {
@@ -231,6 +246,7 @@ TEST_F(Cli, Cw2RefusesWrongUsage) {
         expect_refusal("cw2", 2, arguments, parts);
     }
     expect_refusal("cw2", 2, {"scene.cw2mesh", "--bench", "3"}, {"--output"});
+    expect_refusal("cw2", 2, {"scene.cw2mesh", "--frames", "3"}, {"--output"});
 }
 
 TEST_F(Cli, AConfigFileStandsForItsOptions) {
@@ -252,6 +268,37 @@ TEST_F(Cli, AConfigFileStandsForItsOptions) {
     expect_refusal("cw2", 2, with_config, {"bad.toml:2: samples: ", "'3'"});
     expect_refusal("cw2", 1, {"scene.cw2mesh", "--output", "new.png", "--config", "gone.toml"},
                    {"gone.toml: ", "No such file"});
+}
+
+TEST_F(Cli, FramesAreTheSameHoweverTheyAreSpreadOverProcesses) {
+    ASSERT_EQ(run({MAKE_TEST_SCENES_PROGRAM, here("scenes")}).status, 0);
+    ASSERT_EQ(bake({"scenes/stage.obj", "-o", "stage.cw2mesh", "--quiet"}).status, 0);
+    for (const std::string orbit : {"camera", "light"}) {
+        fs::create_directories(here("whole"));
+        fs::create_directories(here("parts"));
+        const auto draw = [&](const std::string& frames, const std::string& folder) {
+            const Outcome outcome = cw2({"stage.cw2mesh", "--size", "96x64", "--orbit", orbit,
+                                         "--frames", frames, "--output", folder + "/a_%02d.png"});
+            EXPECT_EQ(outcome.status, 0);
+            EXPECT_EQ(outcome.err, "");
+            EXPECT_TRUE(outcome.out.ends_with(" a second\n")) << outcome.out;
+        };
+        draw("7", "whole");
+        for (const std::string part : {"0..2/7", "3..3/7", "4..6/7"}) draw(part, "parts");
+        EXPECT_EQ(std::distance(fs::directory_iterator(here("whole")), {}), 7);
+        EXPECT_EQ(std::distance(fs::directory_iterator(here("parts")), {}), 7);
+        std::string last;
+        for (int frame = 0; frame < 7; ++frame) {
+            const std::string name = "/a_0" + std::to_string(frame) + ".png";
+            const std::string bytes = bytes_of(here("whole" + name));
+            EXPECT_TRUE(bytes.starts_with("\x89PNG")) << name;
+            EXPECT_TRUE(bytes == bytes_of(here("parts" + name))) << name;
+            EXPECT_FALSE(bytes == last) << name;
+            last = bytes;
+        }
+        fs::remove_all(here("whole"));
+        fs::remove_all(here("parts"));
+    }
 }
 
 TEST_F(Cli, ValuesMayStartWithAMinus) {

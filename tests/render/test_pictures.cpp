@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -290,6 +291,29 @@ TEST_F(Pictures, MasksCutWhatTheyShow) {
     const Picture whole = draw_frontal("leaf", ".exr", "shaded", {"--no-alpha-mask"});
     for_each_point(whole, 0.99, 0.99,
                    [](dvec2, const float* sample) { ASSERT_EQ(sample[3], 1.0f); });
+}
+
+TEST_F(Pictures, ALightOnTheSurfaceShinesStraightDownOnThatPoint) {
+    // So far from the origin that the positions of many pixels round to the light's.
+    const TemporaryFolder folder;
+    std::ofstream(folder / "far.obj") << "v 1048575 1048575 0\nv 1048577 1048575 0\n"
+                                         "v 1048577 1048577 0\nv 1048575 1048577 0\nf 1 2 3 4\n";
+    const auto scene = bake_scene(folder / "far.obj", {"--positions", "f32"});
+    const auto draw_view = [&](const std::string& view) {
+        return draw_scene(scene, ".exr",
+                          {"--view", view, "--size", "64x64", "--samples", "1", "--camera-position",
+                           "1048576,1048576,2", "--camera-target", "1048576,1048576,0",
+                           "--light-position", "1048576,1048576,0"});
+    };
+    const Picture direction = draw_view("light-direction");
+    int straight_down = 0;
+    for (std::size_t i = 0; i < direction.samples.size(); i += 4) {
+        const float* const sample = &direction.samples[i];
+        straight_down += sample[0] == 0.5f && sample[1] == 0.5f && sample[2] == 1.0f;
+    }
+    EXPECT_GT(straight_down, 0);
+    const Picture shaded = draw_view("shaded");
+    for (const float sample : shaded.samples) ASSERT_TRUE(std::isfinite(sample));
 }
 
 TEST_F(Pictures, TheLightTurnsAboutZThroughTheCentre) {

@@ -64,11 +64,20 @@ class RandomOptions {
         options.alpha_mask = below(2) == 0;
         maybe([&] { options.anisotropy = 1 + below(16); });
         maybe([&] { options.device = text(); });
+        maybe([&] {
+            const std::uint32_t count = 1 + below(1000);
+            const std::uint32_t last = below(count);
+            options.frames = {below(last + 1), last, count};
+            // What makes no sense cannot be read, and so need not be written.
+            options.output = "a #%04d \"b\".png";
+            options.bench_frames = 0;
+            maybe([&] { options.orbit = below(2) == 0 ? Orbit::camera : Orbit::light; });
+        });
         options.list_devices = below(2) == 0;
         options.list_views = below(2) == 0;
         options.validation = below(2) == 0;
         maybe([&] { options.stats = text(); });
-        options.bench_frames = below(1000);
+        if (!options.frames) options.bench_frames = below(1000);
         return options;
     }
 
