@@ -4,7 +4,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <cctype>
 #include <thread>
 
 #include "cw2-bake/chunks.h"
@@ -20,6 +19,7 @@
 #include "cw2-bake/textures.h"
 #include "cw2-bake/up_axis.h"
 #include "cw2-bake/weld.h"
+#include "cw2-bake/write_gltf.h"
 #include "mesh-format/file.h"
 
 namespace bake {
@@ -32,12 +32,7 @@ using mesh_format::StringRef;
 using mesh_format::TextureRecord;
 
 SourceScene read_scene(const std::filesystem::path& path, const Warn& warn) {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
-        return static_cast<char>(std::tolower(c));
-    });
-    return extension == ".gltf" || extension == ".glb" ? read_gltf(path, warn)
-                                                       : read_obj(path, warn);
+    return is_gltf(path) ? read_gltf(path, warn) : read_obj(path, warn);
 }
 
 TextureSet make_textures(const Settings& settings, const SourceScene& scene, const Warn& warn) {
@@ -158,6 +153,15 @@ void add_start(const SourceScene& source, mesh_format::SceneRecord& record) {
     }
 }
 
+std::string export_summary(const Settings& settings, const mesh_format::Document& document,
+                           std::uint64_t bytes) {
+    std::uint64_t vertices = 0;
+    for (const mesh_format::MeshRecord& mesh : document.meshes) vertices += mesh.vertex_count;
+    return fmt::format("{}\n  {} vertices, {} triangles, {} materials, {} textures; {} bytes\n",
+                       settings.output.string(), vertices, document.scene.index_count / 3,
+                       document.materials.size(), document.textures.size(), bytes);
+}
+
 void write_stats(const Settings& settings, const BakeStats& stats) {
     const std::string json = to_json(stats, std::filesystem::file_size(settings.input));
     mesh_format::OutputFile file(*settings.stats);
@@ -166,6 +170,19 @@ void write_stats(const Settings& settings, const BakeStats& stats) {
 }
 
 }  // namespace
+
+std::string export_baked(const Settings& settings) {
+    const mesh_format::MappedFile file(settings.input);
+    const mesh_format::Document document =
+        mesh_format::parse(file.bytes(), settings.input.string());
+    if (document.is_encoded())
+        throw BakeError(settings.input.string() + ": is compressed; bake without --compress");
+    std::vector<std::span<const std::byte>> payloads;
+    for (const TextureRecord& texture : document.textures)
+        payloads.push_back(document.payload(texture));
+    const std::uint64_t bytes = write_gltf(document, payloads, settings.output);
+    return export_summary(settings, document, bytes);
+}
 
 std::string bake(const Settings& settings, const Warn& warn) {
     const std::size_t threads = settings.threads > 0 ? static_cast<std::size_t>(settings.threads)
@@ -211,10 +228,14 @@ std::string bake(const Settings& settings, const Warn& warn) {
         document.vertices = geometry.vertices;
         document.indices = geometry.indices;
     }
-    const std::uint64_t bytes = mesh_format::write(document, tables.payloads, settings.output);
+    const bool exports = is_gltf(settings.output);
+    const std::uint64_t bytes =
+        exports ? write_gltf(document, tables.payloads, settings.output)
+                : mesh_format::write(document, tables.payloads, settings.output);
     clock.end("write");
     if (settings.stats)
         write_stats(settings, {bytes, measure(framed_scene, meshes), geometry.scene, clock});
+    if (exports) return export_summary(settings, document, bytes);
     return fmt::format("{}\n{}{}", settings.output.string(), summary(document, bytes),
                        taken_over(textures));
 }

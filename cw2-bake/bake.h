@@ -12,4 +12,8 @@ namespace bake {
 /// mesh_format::FileError; the output is then as it was.
 std::string bake(const Settings& settings, const Warn& warn);
 
+/// Writes settings.input, a .cw2mesh file, as a glTF to settings.output and returns a summary.
+/// Throws as bake() does.
+std::string export_baked(const Settings& settings);
+
 }  // namespace bake

@@ -21,10 +21,12 @@ void inspect(const bake::Settings& settings) {
 
 void run(const bake::Settings& settings) {
     if (settings.inspect) return inspect(settings);
-    const std::string summary = bake::bake(settings, [&](const std::string& warning) {
+    const auto warn = [&](const std::string& warning) {
         if (settings.strict) throw bake::BakeError(warning);
         if (!settings.quiet) std::fprintf(stderr, "cw2-bake: warning: %s\n", warning.c_str());
-    });
+    };
+    const std::string summary =
+        settings.is_baked ? bake::export_baked(settings) : bake::bake(settings, warn);
     if (!settings.quiet) std::fputs(summary.c_str(), stdout);
 }
 

@@ -13,6 +13,7 @@
 
 #include "cw2-bake/gltf_file.h"
 #include "cw2-bake/gltf_json.h"
+#include "cw2-bake/gltf_light.h"
 #include "cw2-bake/gltf_primitives.h"
 #include "cw2-bake/text_lines.h"
 
@@ -146,8 +147,7 @@ void take_light(const GltfFile& file, const std::vector<Placed>& lights, const B
     for (const Placed& placed : lights) {
         const auto& light = file.model.lights[static_cast<std::size_t>(placed.index)];
         const glm::dvec3 position(placed.world_from_node[3]);
-        const double distance =
-            std::max({glm::length(position - box.center), 0.5 * box.half_diagonal, 1e-6});
+        const double distance = light_distance(position, box.center, box.half_diagonal);
         glm::vec3 color(static_cast<float>(light.intensity / (distance * distance)));
         for (int c = 0; c < 3 && light.color.size() == 3; ++c)
             color[c] *= static_cast<float>(light.color[static_cast<std::size_t>(c)]);

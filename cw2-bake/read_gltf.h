@@ -15,9 +15,8 @@ namespace bake {
 ///
 /// - Corners without normals get those of their triangles; given tangents are kept.
 /// - UVs are turned to v up, and hold KHR_texture_transform.
-/// - The first perspective camera and the first point light of KHR_lights_punctual become the
-///   scene's. Our light has no falloff: its colour is what the glTF's light gives at the distance
-///   of the bounding box's centre, or of half the box's half diagonal if it is nearer.
+/// - The first perspective camera and the first point light of KHR_lights_punctual (see
+///   gltf_light.h) become the scene's.
 SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn);
 
 }  // namespace bake

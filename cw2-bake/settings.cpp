@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 
+#include "cw2-bake/write_gltf.h"
+
 namespace bake {
 
 namespace {
@@ -34,14 +36,16 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     using mesh_format::FrameForm;
     using mesh_format::PositionForm;
     Settings settings;
-    CLI::App app("Turns a Wavefront OBJ with its materials and textures into one file for cw2.",
-                 "cw2-bake");
+    CLI::App app(
+        "Turns a Wavefront OBJ or a glTF 2.0 with its materials and textures into one file for "
+        "cw2; or that file, or any of these, into a glTF.",
+        "cw2-bake");
     app.set_version_flag("--version", "cw2-bake " CW2_VERSION);
-    app.add_option("INPUT", settings.input, "scene to bake, or with --inspect a baked file")
+    app.add_option("INPUT", settings.input, "scene to bake (.obj, .gltf, .glb), or a baked file to export or inspect")
         ->required()
         ->type_name("FILE");
-    app.add_option("-o,--output", settings.output, "file to write [INPUT as .cw2mesh]")
-        ->type_name("FILE.cw2mesh");
+    app.add_option("-o,--output", settings.output, "file to write; .glb or .gltf exports [INPUT as .cw2mesh]")
+        ->type_name("FILE.cw2mesh|FILE.glb|FILE.gltf");
     add_choice<bool>(app, "--up", settings.z_up, {{"y", false}, {"z", true}},
                      "the input's up axis [y]");
     add_choice<FrameForm>(app, "--tangent-frame", settings.frame_form,
@@ -81,6 +85,17 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     if (settings.json && !settings.inspect) throw UsageError("--json needs --inspect");
     if (settings.output.empty()) {
         settings.output = std::filesystem::path(settings.input).replace_extension("cw2mesh");
+    }
+    settings.is_baked = settings.input.extension() == ".cw2mesh";
+    if (settings.inspect) return settings;
+    if (settings.is_baked && !is_gltf(settings.output))
+        throw UsageError("a .cw2mesh file is baked already; -o FILE.glb exports it");
+    if (is_gltf(settings.output)) {
+        if (settings.compress) throw UsageError("--compress is for .cw2mesh files");
+        // A glTF holds floats and PNGs: they should be as good as the source.
+        if (app.count("--tangent-frame") == 0) settings.frame_form = FrameForm::f32;
+        if (app.count("--positions") == 0) settings.position_form = PositionForm::f32;
+        if (app.count("--textures") == 0) settings.textures = TextureMode::lossless;
     }
     return settings;
 }

@@ -17,7 +17,7 @@ enum class TextureMode {
 
 struct Settings {
     std::filesystem::path input;
-    std::filesystem::path output;  ///< [the input with the extension .cw2mesh]
+    std::filesystem::path output;  ///< [the input with the extension .cw2mesh]; may be a glTF
     bool z_up = false;             ///< the input's up axis is +Z
     mesh_format::FrameForm frame_form = mesh_format::FrameForm::quat48;
     mesh_format::PositionForm position_form = mesh_format::PositionForm::quantised;
@@ -27,6 +27,7 @@ struct Settings {
     std::optional<std::filesystem::path> stats;  ///< where to write what the bake did, as JSON
     bool strict = false;                         ///< a warning is an error
     bool quiet = false;                          ///< print errors only
+    bool is_baked = false;                       ///< the input is a .cw2mesh file
     bool inspect = false;                        ///< print what is in the input, a .cw2mesh file
     bool json = false;                           ///< with inspect: for machines
 };

@@ -12,6 +12,8 @@ cw2-bake/*              | mesh-format/* cw2-bake/* glm/* fmt/* tbb/* CLI/*
 cw2-bake/*              | meshoptimizer.h zstd.h xxhash.h stb/stb_dxt.h
 cw2-bake/read_*.cpp     | fast_float/*
 cw2-bake/gltf_*         | tiny_gltf.h nlohmann/json.hpp
+cw2-bake/write_gltf.*   | nlohmann/json.hpp
+cw2-bake/encode_png.*   | png.h
 cw2-bake/obj_parser.cpp | fast_float/*
 cw2-bake/image_reader.* | OpenImageIO/*
 cw2/*                   | mesh-format/* cw2/* shaders/interop.h shaders/false_color.h *.vert.h *.frag.h glm/* fmt/*
