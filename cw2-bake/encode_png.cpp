@@ -8,8 +8,8 @@
 
 namespace bake {
 
-std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height,
-                                  std::uint32_t channels, std::span<const std::byte> texels) {
+std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
+                                  std::span<const std::byte> texels) {
     std::vector<std::byte> file;
     std::string problem;
     png_structp png = png_create_write_struct(

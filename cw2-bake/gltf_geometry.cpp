@@ -42,7 +42,8 @@ glm::vec3 position_of(const Document& document, const MeshRecord& mesh, const st
     std::uint16_t q[3];
     load(vertex, q);
     for (int axis = 0; axis < 3; ++axis)
-        position[axis] = document.scene.position_step * static_cast<float>(mesh.origin[axis] + q[axis]);
+        position[axis] =
+            document.scene.position_step * static_cast<float>(mesh.origin[axis] + q[axis]);
     return position;
 }
 
@@ -93,9 +94,8 @@ class View {
     }
 
     void finish(GltfGeometry& geometry) {
-        ordered_json view{{"buffer", 0},
-                          {"byteOffset", geometry.bytes.size()},
-                          {"byteLength", bytes_.size()}};
+        ordered_json view{
+            {"buffer", 0}, {"byteOffset", geometry.bytes.size()}, {"byteLength", bytes_.size()}};
         if (stride_ > 0) view["byteStride"] = stride_;
         view["target"] = target_;
         geometry.views.push_back(std::move(view));

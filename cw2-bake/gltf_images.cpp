@@ -76,7 +76,9 @@ Picture picture_of(const Document& document, TexturePayloads payloads, std::uint
 
 /// z = sqrt(1 - x^2 - y^2) in the encoding 0.5 n + 0.5 of 8 bits.
 std::byte rebuilt_z(std::byte x, std::byte y) {
-    const auto component = [](std::byte value) { return std::to_integer<int>(value) / 127.5 - 1.0; };
+    const auto component = [](std::byte value) {
+        return std::to_integer<int>(value) / 127.5 - 1.0;
+    };
     const double square = 1.0 - component(x) * component(x) - component(y) * component(y);
     return static_cast<std::byte>(std::lround(127.5 + 127.5 * std::sqrt(std::max(0.0, square))));
 }
@@ -128,8 +130,7 @@ GltfImages make_gltf_images(const Document& document, TexturePayloads payloads) 
     std::vector<Key> keys;
     const auto add = [&](const Key& key) {
         if (key.first == kNoTexture && key.second == kNoTexture) return kNoImage;
-        const auto [entry, fresh] =
-            known.try_emplace(key, static_cast<std::uint32_t>(keys.size()));
+        const auto [entry, fresh] = known.try_emplace(key, static_cast<std::uint32_t>(keys.size()));
         if (fresh) keys.push_back(key);
         return entry->second;
     };
@@ -138,8 +139,7 @@ GltfImages make_gltf_images(const Document& document, TexturePayloads payloads) 
         const std::uint32_t mask = masked ? material.alpha_mask_texture : kNoTexture;
         result.materials.push_back(
             {add({Use::color, material.base_color_texture, mask}),
-             add({Use::metallic_roughness, material.roughness_texture,
-                  material.metalness_texture}),
+             add({Use::metallic_roughness, material.roughness_texture, material.metalness_texture}),
              add({Use::normal, material.normal_texture, kNoTexture})});
     }
     result.images.resize(keys.size());

@@ -26,9 +26,8 @@ using nlohmann::ordered_json;
 
 std::string extension_of(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
-        return static_cast<char>(std::tolower(c));
-    });
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return extension;
 }
 
@@ -76,8 +75,8 @@ void add_camera(const SceneRecord& scene, ordered_json& root) {
         std::abs(sight.y) < 0.9999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
     const glm::dquat rotation = glm::quatLookAtRH(sight, up);
     const float near = std::max(1e-4f * scene.radius, 1e-6f);
-    root["cameras"].push_back({{"type", "perspective"},
-                               {"perspective", {{"yfov", scene.camera_fov}, {"znear", near}}}});
+    root["cameras"].push_back(
+        {{"type", "perspective"}, {"perspective", {{"yfov", scene.camera_fov}, {"znear", near}}}});
     root["nodes"].push_back({{"name", "camera"},
                              {"camera", 0},
                              {"translation", json_of(glm::vec3(position))},
@@ -107,10 +106,8 @@ void add_images(const GltfImages& images, GltfGeometry& geometry, ordered_json& 
     constexpr int kLinear = 9729, kTrilinear = 9987, kRepeat = 10497, kClamp = 33071;
     if (images.images.empty()) return;
     for (const int wrap : {kRepeat, kClamp}) {
-        root["samplers"].push_back({{"magFilter", kLinear},
-                                    {"minFilter", kTrilinear},
-                                    {"wrapS", wrap},
-                                    {"wrapT", wrap}});
+        root["samplers"].push_back(
+            {{"magFilter", kLinear}, {"minFilter", kTrilinear}, {"wrapS", wrap}, {"wrapT", wrap}});
     }
     for (std::size_t i = 0; i < images.images.size(); ++i) {
         const GltfImages::File& image = images.images[i];
@@ -134,7 +131,8 @@ std::string base64(std::span<const std::byte> bytes) {
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         std::uint32_t bits = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            bits = bits << 8 | (i + k < bytes.size() ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0);
+            bits = bits << 8 |
+                   (i + k < bytes.size() ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0);
         const std::size_t digits = std::min<std::size_t>(bytes.size() - i, 3) + 1;
         for (std::size_t k = 0; k < 4; ++k)
             text += k < digits ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
@@ -154,7 +152,8 @@ std::uint64_t write_glb(std::string json, std::span<const std::byte> binary,
     json.resize((json.size() + 3) / 4 * 4, ' ');
     const std::uint64_t size = 12 + 8 + json.size() + 8 + binary.size();
     if (size > 0xFFFF'FFFF)
-        throw mesh_format::FileError(path.string() + ": would be larger than 4 GiB, a .glb's limit");
+        throw mesh_format::FileError(path.string() +
+                                     ": would be larger than 4 GiB, a .glb's limit");
     mesh_format::OutputFile file(path);
     constexpr std::uint32_t kMagic = 0x4654'6C67, kJson = 0x4E4F'534A, kBinary = 0x004E'4942;
     write_words(file, {kMagic, 2, static_cast<std::uint32_t>(size),
@@ -196,12 +195,13 @@ std::uint64_t write_gltf(const Document& document, TexturePayloads payloads,
     if (document.scene.flags & mesh_format::kHasCamera) add_camera(document.scene, root);
     if (document.scene.flags & mesh_format::kHasLight) add_light(document.scene, geometry, root);
     add_images(images, geometry, root);
-    for (std::size_t i = 0; i < root["nodes"].size(); ++i)
-        root["scenes"][0]["nodes"].push_back(i);
+    for (std::size_t i = 0; i < root["nodes"].size(); ++i) root["scenes"][0]["nodes"].push_back(i);
     root["accessors"] = std::move(geometry.accessors);
     root["bufferViews"] = std::move(geometry.views);
     ordered_json buffer{{"byteLength", geometry.bytes.size()}};
-    const auto text = [&] { return root.dump(-1, ' ', false, ordered_json::error_handler_t::replace); };
+    const auto text = [&] {
+        return root.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+    };
     if (extension_of(path) == ".glb") {
         root["buffers"].push_back(std::move(buffer));
         return write_glb(text(), geometry.bytes, path);

@@ -12,8 +12,8 @@ namespace bake {
 /// Whether the file's name ends as those of glTF do: .gltf or .glb, in any case.
 bool is_gltf(const std::filesystem::path& path);
 
-/// Writes a .glb, or a .gltf that holds its buffer as a data URI: positions, normals, tangents, UVs,
-/// materials with PNG images, and the camera and light if the document has them (see
+/// Writes a .glb, or a .gltf that holds its buffer as a data URI: positions, normals, tangents,
+/// UVs, materials with PNG images, and the camera and light if the document has them (see
 /// gltf_light.h). A material whose back faces keep their normals says so in its
 /// extras, as "cw2_back_normals": "kept", which read_gltf() honours. Base colours above 1 become 1.
 ///
