@@ -146,6 +146,15 @@ std::optional<TexelSource> find_normals(const std::optional<TextureMap>& map, bo
                    : normal_texels(*image);
 }
 
+MapSettings settings_of(const std::optional<TextureMap>& map) {
+    return map ? MapSettings(true, map->channel, map->clamp)
+               : MapSettings(false, Channel::standard, false);
+}
+
+ImageCache::NormalsKey normals_key(const std::optional<TextureMap>& map, bool bump, float scale) {
+    return {map->file, settings_of(map), bump, bump ? scale : 0.0f};
+}
+
 void make_normals(const ImageRequest& request, ImageCache& images, ImageResult& result) {
     const bool bump = request.kind == ImageRequest::Kind::bump;
     const auto texels = find_normals(request.map, bump, request.bump_scale, images, result);
@@ -153,8 +162,10 @@ void make_normals(const ImageRequest& request, ImageCache& images, ImageResult& 
         return;
     }
     constexpr TextureFormat kFormat = TextureFormat::rgba8_unorm;
-    Texture texture =
-        finish(*request.map, kFormat, *texels, filter_chain(kFormat, *texels, encode_normal8));
+    MeanLengths lengths{texels->width, texels->height, {}};
+    Texture texture = finish(*request.map, kFormat, *texels,
+                             filter_chain(kFormat, *texels, measuring(encode_normal8, lengths)));
+    images.lengths.emplace(normals_key(request.map, bump, request.bump_scale), std::move(lengths));
     if (!is_flat(texture)) {
         result.texture = std::move(texture);
     }
@@ -162,6 +173,7 @@ void make_normals(const ImageRequest& request, ImageCache& images, ImageResult& 
 
 /// `source` with each of its texels repeated to cover a larger image.
 TexelSource enlarged(const TexelSource& source, std::uint32_t width, std::uint32_t height) {
+    if (source.width == width && source.height == height) return source;
     return {width, height, 1,
             [=, row = std::vector<float>(source.width)](std::uint32_t y,
                                                         std::span<float> texels) mutable {
@@ -196,7 +208,11 @@ void make_roughness(const ImageRequest& request, ImageCache& images, ImageResult
         const TexelSource own = image ? scalar_texels(*image, request.map->channel) : constant;
         const TexelSource alphas = enlarged(own, std::max(own.width, normals->width),
                                             std::max(own.height, normals->height));
-        MeanLengths lengths = mean_lengths(scaled_normals(*normals, request.normal_scale));
+        const auto known = images.lengths.find(
+            normals_key(request.relief, request.relief_is_bump, request.bump_scale));
+        MeanLengths lengths = known != images.lengths.end() && request.normal_scale == 1.0f
+                                  ? known->second
+                                  : mean_lengths(scaled_normals(*normals, request.normal_scale));
         RoughnessChain chain = filter_roughness(alphas, request.factor, lengths);
         if (chain.widened) {
             const TextureMap& map = image ? *request.map : *request.relief;
@@ -216,13 +232,15 @@ void make_roughness(const ImageRequest& request, ImageCache& images, ImageResult
 }  // namespace
 
 RequestSettings settings_of(const ImageRequest& request) {
-    const auto of_map = [](const std::optional<TextureMap>& map) {
-        return map ? MapSettings(true, map->channel, map->clamp)
-                   : MapSettings(false, Channel::standard, false);
-    };
-    return {request.kind,           of_map(request.map),    of_map(request.alpha_map),
-            of_map(request.relief), request.alpha_cutoff,   request.color_alpha_is_mask,
-            request.bump_scale,     request.relief_is_bump, request.normal_scale,
+    return {request.kind,
+            settings_of(request.map),
+            settings_of(request.alpha_map),
+            settings_of(request.relief),
+            request.alpha_cutoff,
+            request.color_alpha_is_mask,
+            request.bump_scale,
+            request.relief_is_bump,
+            request.normal_scale,
             request.factor};
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cw2-bake/read_image.h"
+#include "cw2-bake/roughness_mips.h"
 #include "cw2-bake/source_scene.h"
 #include "cw2-bake/textures.h"
 
@@ -62,6 +63,10 @@ class ImageCache {
  public:
     /// The image, read when first asked for. Throws ImageError.
     const Image& get(const TextureMap& map);
+
+    /// The lengths that a normal map's levels left behind, for the roughness under it.
+    using NormalsKey = std::tuple<std::filesystem::path, MapSettings, bool, float>;
+    std::map<NormalsKey, MeanLengths> lengths;
 
  private:
     std::map<std::filesystem::path, Image> images_;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "cw2-bake/every_cpu.h"
 #include "cw2-bake/srgb.h"
 
 namespace bake {
@@ -139,7 +140,11 @@ std::vector<std::byte> filter_chain(mesh_format::TextureFormat format, const Tex
         TexelSource encoding = rows;
         encoding.read_row = [&](std::uint32_t y, std::span<float> texels) {
             rows.read_row(y, texels);
-            encode(texels, out + y * row_bytes);
+            if (rows.read_stored_row) {
+                rows.read_stored_row(y, out + y * row_bytes);
+            } else {
+                encode(texels, out + y * row_bytes);
+            }
         };
         // The last level's average is its one texel, and is not needed.
         Level next = halve(encoding);
@@ -152,7 +157,7 @@ std::vector<std::byte> filter_chain(mesh_format::TextureFormat format, const Tex
     }
 }
 
-void encode_unorm8(std::span<const float> texels, std::byte* out) {
+CW2_EVERY_CPU void encode_unorm8(std::span<const float> texels, std::byte* out) {
     for (std::size_t i = 0; i < texels.size(); ++i) {
         out[i] = static_cast<std::byte>(unorm8(texels[i]));
     }
@@ -168,7 +173,7 @@ void encode_srgb8(std::span<const float> texels, std::byte* out) {
     }
 }
 
-void encode_normal8(std::span<const float> texels, std::byte* out) {
+CW2_EVERY_CPU void encode_normal8(std::span<const float> texels, std::byte* out) {
     // Blocks with the components apart: twice as fast, since SSE2 has no loads with a stride of 3.
     constexpr std::size_t kBlock = 64;
     std::array<float, kBlock> x{};

@@ -28,12 +28,16 @@ struct Level {
 /// Level 0 row by row, so that it is never in memory as floats: fills `texels` with row y.
 using RowSource = std::function<void(std::uint32_t y, std::span<float> texels)>;
 
+/// Level 0 as its texture stores it, where that is known without filtering: fills a row.
+using StoredRowSource = std::function<void(std::uint32_t y, std::byte* out)>;
+
 /// What level 0 is, and how its rows are read.
 struct TexelSource {
     std::uint32_t width;
     std::uint32_t height;
     std::uint32_t channels;
     RowSource read_row;
+    StoredRowSource read_stored_row{};  ///< what an encoder would make of read_row(); may be empty
 };
 
 /// Writes one row of filtered texels as a texture's bytes.
@@ -46,7 +50,7 @@ Level halve(const TexelSource& source);
 TexelSource source_of(Level& level);
 
 /// The complete payload of a texture, as mesh_format::TextureRecord describes it. Rows of level 0
-/// are encoded as they are read.
+/// are encoded as they are read, unless the source has them as they are stored.
 std::vector<std::byte> filter_chain(mesh_format::TextureFormat format, const TexelSource& source,
                                     const RowEncoder& encode);
 

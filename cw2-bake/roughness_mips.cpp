@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <span>
+#include <utility>
+
+#include "cw2-bake/every_cpu.h"
 
 namespace bake {
 namespace {
@@ -27,6 +30,14 @@ std::span<const float> row_beside(MeanLengths& lengths, std::uint32_t y, std::ui
     return {};
 }
 
+/// The lengths of vectors.
+CW2_EVERY_CPU void measure(std::span<const float> vectors, std::span<float> lengths) {
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        const float* n = vectors.data() + 3 * i;
+        lengths[i] = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    }
+}
+
 }  // namespace
 
 MeanLengths mean_lengths(const TexelSource& normals) {
@@ -38,15 +49,29 @@ MeanLengths mean_lengths(const TexelSource& normals) {
         Level next = halve(rows);
         means = std::move(next);
         rows = source_of(means);
-        Level level{means.width, means.height, 1, {}};
-        level.texels.resize(means.texels.size() / 3);
-        for (std::size_t i = 0; i < level.texels.size(); ++i) {
-            const float* n = means.texels.data() + 3 * i;
-            level.texels[i] = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        }
-        lengths.levels.push_back(std::move(level));
+        lengths.levels.push_back({means.width, means.height, 1, {}});
+        lengths.levels.back().texels.resize(means.texels.size() / 3);
+        measure(means.texels, lengths.levels.back().texels);
     }
     return lengths;
+}
+
+RowEncoder measuring(RowEncoder encode, MeanLengths& lengths) {
+    return [encode = std::move(encode), &lengths, level = 0u, y = 0u](std::span<const float> texels,
+                                                                      std::byte* out) mutable {
+        encode(texels, out);
+        const auto width = static_cast<std::uint32_t>(texels.size() / 3);
+        const std::uint32_t height = mesh_format::mip_extent(lengths.height, level);
+        if (level > 0) {
+            if (y == 0) lengths.levels.push_back({width, height, 1, {}});
+            lengths.levels.back().texels.resize(std::size_t{width} * height);
+            measure(texels, lengths.levels.back().row(y));
+        }
+        if (++y == height) {
+            y = 0;
+            ++level;
+        }
+    };
 }
 
 float widened_roughness(float alpha, float length) {
@@ -58,11 +83,11 @@ float widened_roughness(float alpha, float length) {
 }
 
 RoughnessChain filter_roughness(const TexelSource& alphas, float factor, MeanLengths& lengths) {
-    TexelSource source = alphas;
-    source.read_row = [&](std::uint32_t y, std::span<float> texels) {
-        alphas.read_row(y, texels);
-        for (float& value : texels) value *= factor;
-    };
+    const TexelSource source{alphas.width, alphas.height, 1,
+                             [&](std::uint32_t y, std::span<float> texels) {
+                                 alphas.read_row(y, texels);
+                                 for (float& value : texels) value *= factor;
+                             }};
     RoughnessChain chain{{}, false};
     std::uint32_t level = 0;
     std::uint32_t y = 0;

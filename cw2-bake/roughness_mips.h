@@ -18,6 +18,10 @@ struct MeanLengths {
 
 MeanLengths mean_lengths(const TexelSource& normals);
 
+/// For filter_chain() on normals: `encode`, which also fills in the levels of `lengths`, as
+/// mean_lengths() would. Width and height are set before.
+RowEncoder measuring(RowEncoder encode, MeanLengths& lengths);
+
 /// The roughness whose highlight is about as wide as that of roughness `alpha` on normals whose
 /// mean has the length `length`, in (0, 1]. After Toksvig, "Mipmapping normal maps", 2005: the
 /// Blinn-Phong exponent s = 2 / alpha^4 - 2 becomes s length / (length + s (1 - length)).

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "cw2-bake/every_cpu.h"
 #include "cw2-bake/row_ring.h"
 #include "cw2-bake/srgb.h"
 
@@ -35,6 +36,11 @@ float to_linear(const SrgbTables&, float value) {
     return std::clamp(to_float(value), 0.0f, 1.0f);
 }
 
+/// Row y of an image of bytes.
+const std::byte* row_bytes(const Image& image, std::uint32_t y) {
+    return image.samples.data() + std::size_t{y} * image.width * image.channels;
+}
+
 /// Calls `visit` with a pointer to the samples of row y, in the image's own type.
 template <typename Visit>
 void with_row(const Image& image, std::uint32_t y, Visit visit) {
@@ -55,6 +61,25 @@ std::array<std::size_t, 3> color_channels(const Image& image) {
                               : std::array<std::size_t, 3>{0, 1, 2};
 }
 
+/// The components apart, since SSE2 has no loads with a stride of 3.
+struct Vectors {
+    static constexpr std::size_t kCount = 64;
+    std::array<float, kCount> x{};
+    std::array<float, kCount> y{};
+    std::array<float, kCount> z{};
+};
+
+CW2_EVERY_CPU void normalise(Vectors& vectors) {
+    auto& [x, y, z] = vectors;
+    for (std::size_t i = 0; i < Vectors::kCount; ++i) {
+        const float square = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+        const float scale = 1.0f / std::sqrt(std::max(square, 1e-12f));
+        x[i] *= scale;
+        y[i] *= scale;
+        z[i] *= scale;
+    }
+}
+
 /// One channel, not limited to [0, 1].
 TexelSource channel_texels(const Image& image, Channel channel) {
     const auto [r, g, b] = color_channels(image);
@@ -71,14 +96,26 @@ TexelSource channel_texels(const Image& image, Channel channel) {
                     return;
                 }
                 with_row(image, y, [&](const auto* row) {
+                    if (!luminance) {
+                        const std::size_t step = image.channels;
+                        for (std::size_t x = 0; x < texels.size(); ++x) {
+                            texels[x] = to_float(row[place + step * x]);
+                        }
+                        return;
+                    }
                     for (std::size_t x = 0; x < texels.size(); ++x, row += image.channels) {
-                        texels[x] = luminance
-                                        ? 0.2126f * to_float(row[r]) + 0.7152f * to_float(row[g]) +
-                                              0.0722f * to_float(row[b])
-                                        : to_float(row[place]);
+                        texels[x] = 0.2126f * to_float(row[r]) + 0.7152f * to_float(row[g]) +
+                                    0.0722f * to_float(row[b]);
                     }
                 });
-            }};
+            },
+            image.type != SampleType::u8 || luminance || opaque
+                ? StoredRowSource()
+                : [=, &image](std::uint32_t y, std::byte* out) {
+                      const std::byte* row = row_bytes(image, y) + place;
+                      const std::size_t step = image.channels;
+                      for (std::size_t x = 0; x < image.width; ++x) out[x] = row[step * x];
+                  }};
 }
 
 /// The range of texels of a side of `other` that texel `at` of a side of `extent` covers.
@@ -138,7 +175,19 @@ TexelSource color_texels(const Image& image) {
                         texels[i + 2] = to_linear(tables, row[b]);
                     }
                 });
-            }};
+            },
+            image.type != SampleType::u8 ? StoredRowSource()
+                                         : [&image](std::uint32_t y, std::byte* out) {
+                                               const auto [r, g, b] = color_channels(image);
+                                               const std::byte* row = row_bytes(image, y);
+                                               for (std::size_t x = 0; x < image.width; ++x) {
+                                                   out[4 * x] = row[r];
+                                                   out[4 * x + 1] = row[g];
+                                                   out[4 * x + 2] = row[b];
+                                                   out[4 * x + 3] = std::byte{255};
+                                                   row += image.channels;
+                                               }
+                                           }};
 }
 
 TexelSource masked_color_texels(const Image& image, const TexelSource& mask, float cutoff) {
@@ -169,15 +218,21 @@ TexelSource normal_texels(const Image& image) {
     return {image.width, image.height, 3, [&image](std::uint32_t y, std::span<float> texels) {
                 const auto [r, g, b] = color_channels(image);
                 with_row(image, y, [&](const auto* row) {
-                    for (std::size_t i = 0; i < texels.size(); i += 3, row += image.channels) {
-                        const float nx = 2.0f * to_float(row[r]) - 1.0f;
-                        const float ny = 2.0f * to_float(row[g]) - 1.0f;
-                        const float nz = 2.0f * to_float(row[b]) - 1.0f;
-                        const float square = nx * nx + ny * ny + nz * nz;
-                        const float scale = 1.0f / std::sqrt(std::max(square, 1e-12f));
-                        texels[i] = nx * scale;
-                        texels[i + 1] = ny * scale;
-                        texels[i + 2] = nz * scale;
+                    Vectors vectors;
+                    for (std::size_t begin = 0; begin < image.width; begin += Vectors::kCount) {
+                        const std::size_t count = std::min(Vectors::kCount, image.width - begin);
+                        for (std::size_t i = 0; i < count; ++i, row += image.channels) {
+                            vectors.x[i] = 2.0f * to_float(row[r]) - 1.0f;
+                            vectors.y[i] = 2.0f * to_float(row[g]) - 1.0f;
+                            vectors.z[i] = 2.0f * to_float(row[b]) - 1.0f;
+                        }
+                        normalise(vectors);
+                        float* out = texels.data() + 3 * begin;
+                        for (std::size_t i = 0; i < count; ++i, out += 3) {
+                            out[0] = vectors.x[i];
+                            out[1] = vectors.y[i];
+                            out[2] = vectors.z[i];
+                        }
                     }
                 });
             }};

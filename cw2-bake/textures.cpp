@@ -48,6 +48,11 @@ std::vector<Batch> make_batches(const std::vector<ImageRequest>& requests,
     }
     std::vector<Batch> batches;
     for (auto& [file, batch] : by_file) {
+        // Normals first: what their levels lose is what roughness takes over.
+        std::ranges::stable_sort(batch.requests, std::greater<>(), [&](std::size_t i) {
+            return requests[i].kind == ImageRequest::Kind::normal ||
+                   requests[i].kind == ImageRequest::Kind::bump;
+        });
         const double weight = encoded_bytes(first_map(requests[batch.requests.front()]));
         batches.push_back({file, weight, std::move(batch.requests)});
     }
