@@ -9,7 +9,7 @@ set -f
 rules='
 mesh-format/*           | mesh-format/*
 cw2-bake/*              | mesh-format/* cw2-bake/* glm/* fmt/* tbb/* CLI/*
-cw2-bake/*              | meshoptimizer.h zstd.h xxhash.h stb/stb_dxt.h
+cw2-bake/*              | meshoptimizer.h zstd.h xxhash.h
 cw2-bake/read_*.cpp     | fast_float/*
 cw2-bake/gltf_*         | tiny_gltf.h nlohmann/json.hpp
 cw2-bake/write_gltf.*   | nlohmann/json.hpp

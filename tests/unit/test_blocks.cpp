@@ -1,7 +1,9 @@
 // Blocks of texels: decoded by the rules of their format, and compressed within stated errors.
 #include <gtest/gtest.h>
+#include <stb/stb_dxt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -198,6 +200,62 @@ TEST(Blocks, SmoothColoursAreCompressedAndTheirPsnrIsWhatItSays) {
         mean_square(texels_of(plain), decode_all(texture), std::size_t{50} * 34 * 4);
     EXPECT_NEAR(texture.psnr, 10.0 * std::log10(255.0 * 255.0 / (with_alpha * 4.0 / 3.0)), 0.01);
     EXPECT_GT(texture.psnr, 34.0f);
+}
+
+/// The mean square over red, green and blue of what stb_dxt makes of the first level.
+double mean_square_of_stb(const Texture& plain) {
+    Texture theirs = plain;
+    theirs.format = TextureFormat::bc1_srgb;
+    theirs.payload.clear();
+    for (std::size_t y = 0; y < plain.height; y += 4) {
+        for (std::size_t x = 0; x < plain.width; x += 4) {
+            std::array<unsigned char, 64> texels;
+            for (std::size_t row = 0; row < 4; ++row) {
+                std::memcpy(texels.data() + 16 * row,
+                            plain.payload.data() + 4 * ((y + row) * plain.width + x), 16);
+            }
+            std::array<unsigned char, 8> block;
+            stb_compress_dxt_block(block.data(), texels.data(), 0, STB_DXT_NORMAL);
+            for (const unsigned char byte : block) theirs.payload.push_back(std::byte{byte});
+        }
+    }
+    theirs.payload.resize(mesh_format::mip_chain_bytes(theirs.format, plain.width, plain.height));
+    const std::size_t count = std::size_t{4} * plain.width * plain.height;
+    return mean_square(texels_of(plain), decode_all(theirs), count) * 4.0 / 3.0;
+}
+
+TEST(Blocks, ColoursAreNoFartherOffThanThoseOfStb) {
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise;
+    const auto paint = [&](double roughness, double chroma) {
+        return make_texture(TextureFormat::rgba8_srgb, 128, 64, [&](int x, int y, std::size_t c) {
+            const double value =
+                wave(x, y, chroma * static_cast<double>(c)) + roughness * noise(random);
+            return c == 3 ? 255 : std::clamp(static_cast<int>(255.0 * value), 0, 255);
+        });
+    };
+    for (const double roughness : {0.0, 0.01, 0.04}) {
+        for (const double chroma : {0.0, 0.2, 1.5}) {
+            Texture texture = paint(roughness, chroma);
+            const double theirs = mean_square_of_stb(texture);
+            bake::compress_to_blocks(texture);
+            EXPECT_GE(texture.psnr, 10.0 * std::log10(255.0 * 255.0 / theirs))
+                << roughness << ' ' << chroma;
+        }
+    }
+}
+
+TEST(Blocks, FlatColoursAreMetWithinTwo) {
+    for (int value = 0; value < 256; ++value) {
+        Texture texture =
+            make_texture(TextureFormat::rgba8_srgb, 4, 4, [&](int, int, std::size_t c) {
+                return c == 3 ? 255 : c == 1 ? 255 - value : value;
+            });
+        bake::compress_to_blocks(texture);
+        const std::vector<int> colors = decode_all(texture);
+        EXPECT_NEAR(colors[0], value, 2);
+        EXPECT_NEAR(colors[1], 255 - value, 1);
+    }
 }
 
 TEST(Blocks, NoiseStaysAsItIsAndSaysWhy) {
