@@ -8,7 +8,6 @@
 #include <new>
 
 #include "cw2-bake/read_image.h"
-#include "mesh-format/layout.h"
 
 namespace {
 
@@ -31,14 +30,10 @@ OIIO::TypeDesc choose_type(OIIO::TypeDesc stored, Image& image) {
     }
 }
 
-void check_extent(const OIIO::ImageSpec& spec) {
-    const auto limit = static_cast<int>(mesh_format::kMaxTextureSize);
-    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) {
+void check_flat(const OIIO::ImageSpec& spec) {
+    bake::check_extent(spec.width, spec.height);
+    if (spec.nchannels < 1) {
         throw ImageError("has no texels");
-    }
-    if (spec.width > limit || spec.height > limit) {
-        throw ImageError("is " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-                         " texels, more than " + std::to_string(limit) + " on a side");
     }
     if (spec.depth > 1 || spec.deep) {
         throw ImageError("is not a flat image");
@@ -53,7 +48,7 @@ Image read(const char* path) {
         throw ImageError(OIIO::geterror());
     }
     const OIIO::ImageSpec& spec = input->spec();
-    check_extent(spec);
+    check_flat(spec);
 
     Image image;
     image.width = static_cast<std::uint32_t>(spec.width);

@@ -7,7 +7,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <system_error>
+#include <utility>
+
+#include "cw2-bake/read_common_image.h"
+#include "mesh-format/io.h"
 
 namespace bake {
 namespace {
@@ -68,6 +73,14 @@ Image read_regular_file(const std::filesystem::path& path) {
     return image;
 }
 
+std::optional<Image> read_common(std::span<const std::byte> contents) {
+    try {
+        return read_common_image(contents);
+    } catch (const std::bad_alloc&) {
+        throw ImageError("needs more memory than there is");
+    }
+}
+
 /// A file in memory that lives as long as this.
 class MemoryFile {
  public:
@@ -98,11 +111,18 @@ class MemoryFile {
 
 Image read_image(const std::filesystem::path& path) {
     check_regular_file(path);
+    try {
+        const mesh_format::MappedFile file(path);
+        if (auto image = read_common(file.bytes())) return std::move(*image);
+    } catch (const mesh_format::FileError&) {
+        // Whoever reads it next says what is wrong with it.
+    }
     return read_regular_file(path);
 }
 
 Image read_image(std::span<const std::byte> contents) {
     if (contents.empty()) throw ImageError("is empty");
+    if (auto image = read_common(contents)) return std::move(*image);
     // Not every decoder of OpenImageIO reads from memory; all read files.
     return read_regular_file(MemoryFile(contents).path());
 }

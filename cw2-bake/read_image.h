@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "mesh-format/layout.h"
+
 namespace bake {
 
 enum class SampleType : std::uint8_t {
@@ -32,6 +34,16 @@ struct Image {
 class ImageError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+/// Throws ImageError unless both are in 1..mesh_format::kMaxTextureSize.
+inline void check_extent(std::int64_t width, std::int64_t height) {
+    const std::int64_t limit = mesh_format::kMaxTextureSize;
+    if (width < 1 || height < 1) throw ImageError("has no texels");
+    if (width > limit || height > limit) {
+        throw ImageError("is " + std::to_string(width) + " x " + std::to_string(height) +
+                         " texels, more than " + std::to_string(limit) + " on a side");
+    }
+}
 
 /// Reads an image of any format that OpenImageIO knows, told by content where the extension
 /// misleads. Throws ImageError if there is none, or if it is damaged or larger than

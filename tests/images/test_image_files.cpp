@@ -7,6 +7,7 @@
 
 #include "cw2-bake/textures.h"
 #include "image_files.h"
+#include "mesh-format/blocks.h"
 
 namespace {
 
@@ -184,9 +185,76 @@ TEST(ImageFiles, ColourUnderLowAlphaIsNotPremultiplied) {
     }
 }
 
+/// The mean over the bytes of level 0, decoded.
+double mean_byte(const Texture& texture) {
+    const std::size_t texel = mesh_format::block_extent(texture.format) > 1
+                                  ? mesh_format::decoded_texel_bytes(texture.format)
+                                  : mesh_format::block_bytes(texture.format);
+    std::vector<std::byte> row(4 * texel * texture.width);
+    double sum = 0.0;
+    for (std::uint32_t y = 0; y < texture.height; y += mesh_format::block_extent(texture.format)) {
+        const std::size_t stride =
+            std::size_t{mesh_format::block_count(texture.format, texture.width)} *
+            mesh_format::block_bytes(texture.format);
+        const std::byte* stored =
+            texture.payload.data() + y / mesh_format::block_extent(texture.format) * stride;
+        std::uint32_t rows = 1;
+        if (mesh_format::block_extent(texture.format) > 1) {
+            rows = std::min(4u, texture.height - y);
+            mesh_format::decode_block_row(texture.format, stored, texture.width, rows, row.data());
+        } else {
+            std::copy_n(stored, stride, row.data());
+        }
+        for (std::size_t i = 0; i < rows * texel * texture.width; ++i) {
+            sum += std::to_integer<int>(row[i]);
+        }
+    }
+    return sum / (static_cast<double>(texel) * texture.width * texture.height);
+}
+
+TEST(ImageFiles, EveryKindServesInBlocksAsItDoesWithout) {
+    const TemporaryFolder folder;
+    const auto smooth = [](int channels) {
+        return [channels](int x, int y) {
+            return std::vector(static_cast<std::size_t>(channels),
+                               0.5 + 0.4 * std::sin(0.01 * (x + y)));
+        };
+    };
+    write_image(folder / "grey.png", 20, 30, 1, smooth(1));
+    write_image(folder / "deep.png", 20, 30, 3, smooth(3), OIIO::TypeDesc::UINT16);
+    write_image(folder / "float.exr", 20, 30, 3, smooth(3), OIIO::TypeDesc::HALF);
+    write_image(folder / "cmyk.tif", 20, 30, 3, smooth(3), OIIO::TypeDesc::UINT8, "tiff:ColorSpace",
+                "CMYK");
+    write_image(folder / "huge.png", 16'384, 5, 1, smooth(1));
+    write_image(folder / "tall.jpg", 3, 16'384, 3, smooth(3));
+    write_image(folder / "misnamed.png", 20, 30, 3, smooth(3));
+    std::filesystem::rename(folder / "misnamed.png", folder / "misnamed.jpg");
+    for (const char* name : {"grey.png", "deep.png", "float.exr", "cmyk.tif", "huge.png",
+                             "tall.jpg", "misnamed.jpg"}) {
+        SCOPED_TRACE(name);
+        SourceMaterial material = with_color(map_of(folder / name));
+        material.roughness_map = map_of(folder / name);
+        const Baked plain = bake_all({material});
+        const bake::TextureSet blocks =
+            bake::bake_textures({{material}}, bake::TextureMode::bc, {},
+                                [](const std::string& line) { ADD_FAILURE() << line; }, {});
+        EXPECT_TRUE(plain.warnings.empty());
+        ASSERT_EQ(blocks.textures.size(), 2u);
+        EXPECT_EQ(blocks.textures[0].format, TextureFormat::bc1_srgb);
+        EXPECT_EQ(blocks.textures[1].format, TextureFormat::bc4_unorm);
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_EQ(blocks.textures[i].width, plain.texture(0).width);
+            EXPECT_EQ(blocks.textures[i].height, plain.texture(0).height);
+            EXPECT_NEAR(mean_byte(blocks.textures[i]),
+                        mean_byte(plain.texture(static_cast<std::uint32_t>(i))), 1.0);
+        }
+    }
+}
+
 /// Bakes a material that names `path` as its roughness, and expects one warning about it.
 void expect_refused(const std::filesystem::path& path, const std::string& cause) {
     SCOPED_TRACE(path.filename().string());
+    testing::internal::CaptureStderr();
     std::size_t in_blocks = 0;
     const bake::TextureSet blocks =
         bake::bake_textures({{with_roughness(map_of(path, "lib/x.mtl:42"))}}, bake::TextureMode::bc,
@@ -201,6 +269,11 @@ void expect_refused(const std::filesystem::path& path, const std::string& cause)
     EXPECT_EQ(line.find("lib/x.mtl:42: " + path.string() + ": "), 0u) << line;
     EXPECT_NE(line.find(cause), std::string::npos) << line;
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "decoders keep quiet";
+    const bake::Warn strict = [](const std::string& text) { throw bake::BakeError(text); };
+    EXPECT_THROW(bake::bake_textures({{with_roughness(map_of(path))}}, bake::TextureMode::bc, {},
+                                     strict, {}),
+                 bake::BakeError);
 }
 
 TEST(BadImages, WhatIsNoImageIsAWarningThatNamesItAndItsPlace) {

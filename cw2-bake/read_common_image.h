@@ -1,0 +1,18 @@
+// PNG and JPEG by their own libraries: reading them takes no OpenImageIO, whose start costs more
+// than most scenes' images.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "cw2-bake/read_image.h"
+
+namespace bake {
+
+/// The image in the contents of a file; nothing if it is neither a PNG nor a JPEG, or one whose
+/// colours are neither grey nor RGB. Palettes and transparent colours are looked up. Throws
+/// ImageError if it is damaged or too large.
+std::optional<Image> read_common_image(std::span<const std::byte> contents);
+
+}  // namespace bake
