@@ -8,6 +8,7 @@
 
 #include "cw2-bake/chunks.h"
 #include "cw2-bake/compress.h"
+#include "cw2-bake/input_files.h"
 #include "cw2-bake/normals.h"
 #include "cw2-bake/progress.h"
 #include "cw2-bake/quantise.h"
@@ -172,6 +173,7 @@ void write_stats(const Settings& settings, const BakeStats& stats) {
 }  // namespace
 
 std::string export_baked(const Settings& settings) {
+    refuse_overwriting(settings, {settings.input});
     const mesh_format::MappedFile file(settings.input);
     const mesh_format::Document document =
         mesh_format::parse(file.bytes(), settings.input.string());
@@ -181,6 +183,7 @@ std::string export_baked(const Settings& settings) {
     for (const TextureRecord& texture : document.textures)
         payloads.push_back(document.payload(texture));
     const std::uint64_t bytes = write_gltf(document, payloads, settings.output);
+    if (settings.depfile) write_depfile(*settings.depfile, settings.output, {settings.input});
     return export_summary(settings, document, bytes);
 }
 
@@ -192,6 +195,8 @@ std::string bake(const Settings& settings, const Warn& warn) {
 
     StageClock clock;
     SourceScene scene = read_scene(settings.input, warn);
+    const std::vector<std::filesystem::path> inputs = input_files(scene);
+    refuse_overwriting(settings, inputs);
     clock.end("read");
     if (settings.z_up) turn_z_up(scene);
     generate_normals(scene);
@@ -233,6 +238,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
         exports ? write_gltf(document, tables.payloads, settings.output)
                 : mesh_format::write(document, tables.payloads, settings.output);
     clock.end("write");
+    if (settings.depfile) write_depfile(*settings.depfile, settings.output, inputs);
     if (settings.stats)
         write_stats(settings, {bytes, measure(framed_scene, meshes), geometry.scene, clock});
     if (exports) return export_summary(settings, document, bytes);

@@ -22,14 +22,15 @@ struct Settings {
     mesh_format::FrameForm frame_form = mesh_format::FrameForm::quat48;
     mesh_format::PositionForm position_form = mesh_format::PositionForm::quantised;
     TextureMode textures = TextureMode::bc;
-    bool compress = false;                       ///< store vertices and indices in fewer bytes
-    int threads = 0;                             ///< 0: one a processor
-    std::optional<std::filesystem::path> stats;  ///< where to write what the bake did, as JSON
-    bool strict = false;                         ///< a warning is an error
-    bool quiet = false;                          ///< print errors only
-    bool is_baked = false;                       ///< the input is a .cw2mesh file
-    bool inspect = false;                        ///< print what is in the input, a .cw2mesh file
-    bool json = false;                           ///< with inspect: for machines
+    bool compress = false;                         ///< store vertices and indices in fewer bytes
+    int threads = 0;                               ///< 0: one a processor
+    std::optional<std::filesystem::path> depfile;  ///< where to write what the output depends on
+    std::optional<std::filesystem::path> stats;    ///< where to write what the bake did, as JSON
+    bool strict = false;                           ///< a warning is an error
+    bool quiet = false;                            ///< print errors only
+    bool is_baked = false;                         ///< the input is a .cw2mesh file
+    bool inspect = false;                          ///< print what is in the input, a .cw2mesh file
+    bool json = false;                             ///< with inspect: for machines
 };
 
 /// A command line that does not make sense; what() is one line.

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -105,13 +106,21 @@ void add_light(const SceneRecord& scene, const GltfGeometry& geometry, ordered_j
 void add_images(const GltfImages& images, GltfGeometry& geometry, ordered_json& root) {
     constexpr int kLinear = 9729, kTrilinear = 9987, kRepeat = 10497, kClamp = 33071;
     if (images.images.empty()) return;
-    for (const int wrap : {kRepeat, kClamp}) {
-        root["samplers"].push_back(
-            {{"magFilter", kLinear}, {"minFilter", kTrilinear}, {"wrapS", wrap}, {"wrapT", wrap}});
-    }
+    std::map<bool, std::size_t> samplers;
+    const auto sampler = [&](bool clamp) {
+        const auto [entry, fresh] = samplers.try_emplace(clamp, samplers.size());
+        if (fresh) {
+            const int wrap = clamp ? kClamp : kRepeat;
+            root["samplers"].push_back({{"magFilter", kLinear},
+                                        {"minFilter", kTrilinear},
+                                        {"wrapS", wrap},
+                                        {"wrapT", wrap}});
+        }
+        return entry->second;
+    };
     for (std::size_t i = 0; i < images.images.size(); ++i) {
         const GltfImages::File& image = images.images[i];
-        root["textures"].push_back({{"sampler", image.clamp ? 1 : 0}, {"source", i}});
+        root["textures"].push_back({{"sampler", sampler(image.clamp)}, {"source", i}});
         root["images"].push_back({{"name", image.name},
                                   {"bufferView", geometry.views.size()},
                                   {"mimeType", "image/png"}});
