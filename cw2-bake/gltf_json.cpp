@@ -116,9 +116,15 @@ constexpr Member kTexture[] = {{"sampler", Kind::index, false, "samplers"},
                                {"extensions", Kind::object, false, {}, 0, kTextureExtensions}};
 constexpr Member kImage[] = {
     {"name", Kind::text}, {"uri", Kind::text}, {"bufferView", Kind::index, false, "bufferViews"}};
-constexpr Member kPerspective[] = {{"yfov", Kind::number, kRequired}};
+constexpr Member kPerspective[] = {{"yfov", Kind::number, kRequired},
+                                   {"znear", Kind::number, kRequired}};
+constexpr Member kOrthographic[] = {{"xmag", Kind::number, kRequired},
+                                    {"ymag", Kind::number, kRequired},
+                                    {"zfar", Kind::number, kRequired},
+                                    {"znear", Kind::number, kRequired}};
 constexpr Member kCamera[] = {{"type", Kind::text, kRequired},
-                              {"perspective", Kind::object, false, {}, 0, kPerspective}};
+                              {"perspective", Kind::object, false, {}, 0, kPerspective},
+                              {"orthographic", Kind::object, false, {}, 0, kOrthographic}};
 constexpr Member kScene[] = {{"nodes", Kind::indices, false, "nodes"}};
 constexpr Member kLight[] = {{"type", Kind::text, kRequired},
                              {"color", Kind::numbers, false, {}, 3},

@@ -15,8 +15,7 @@ std::vector<std::filesystem::path> input_files(const SourceScene& scene);
 
 /// Throws BakeError where the output, or what --stats or --depfile name, is one of `inputs`, or
 /// where two of them are one file.
-void refuse_overwriting(const Settings& settings,
-                        const std::vector<std::filesystem::path>& inputs);
+void refuse_overwriting(const Settings& settings, const std::vector<std::filesystem::path>& inputs);
 
 /// Writes the rule "output: inputs" for make and ninja. Throws BakeError for a name that make
 /// cannot take (one with a line break), and mesh_format::FileError.
