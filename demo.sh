@@ -1,8 +1,14 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds Release, makes the demo scene, bakes it, renders the pictures
 # below into build/demo and opens the window where there is a display.
+# With the argument `figures` it draws the pictures of docs/figures.md instead.
 set -euo pipefail
 cd "$(dirname "$0")"
+
+if [[ $# -gt 1 || ${1:-figures} != figures ]]; then
+    echo "usage: ./demo.sh [figures]" >&2
+    exit 2
+fi
 
 court='--camera-position 7.8,2.5,2.3 --camera-target -1.5,2.15,-0.3
        --light-position 4,7,5 --light-color 2.5,2.4,2.2'
@@ -38,6 +44,11 @@ timed() {
 third_party/install_packages.sh
 cmake --preset release >/dev/null
 [[ -t 1 ]] && quiet=() || quiet=(-- --quiet)
+if [[ $# -eq 1 ]]; then
+    cmake --build --preset release --target figures "${quiet[@]}"
+    echo "See docs/figures.md and docs/figures/."
+    exit
+fi
 cmake --build --preset release --target cw2 cw2-bake demo-scene "${quiet[@]}"
 
 mkdir -p build/demo

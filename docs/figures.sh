@@ -1,27 +1,93 @@
 #!/usr/bin/env bash
-# Draws the pictures of the README and of docs/ from the demo scene.
+# Draws the pictures of the README and of docs/ from the demo scene, and writes docs/figures.md.
 # Usage: docs/figures.sh BUILD_DIRECTORY    (the target `figures` calls it)
 set -euo pipefail
+build=$(realpath "$1")
 cd "$(dirname "$0")"
 
-bin=$1/bin
-model=$1/assets/demo/courtyard.obj
-work=$1/figures
-mkdir -p "$work"
+bin=$build/bin
+model=$build/assets/demo/courtyard.obj
+work=$build/figures
+mkdir -p "$work" figures
+rm -f figures/*.png
 
-"$bin/cw2-bake" "$model" -o "$work/courtyard.cw2mesh" --quiet
-"$bin/cw2" "$work/courtyard.cw2mesh" --output courtyard.png --size 960x540 \
-    --camera-position 7.8,2.5,2.3 --camera-target -1.5,2.15,-0.3 --light-position 4,7,5 \
-    --light-color 2.5,2.4,2.2 --time 5.4
-
-# The lion's face, each form of its frames beside the exact one.
-face=(--size 256x256 --samples 1 --camera-position 2.6,2.6,3 --camera-target 1.15,2.35,1.15
-      --light-position 5,4.5,2.5 --light-color 2,2,2)
 forms=(f32 quat48 quat32 half3)
 for form in "${forms[@]}"; do
     "$bin/cw2-bake" "$model" -o "$work/$form.cw2mesh" --tangent-frame "$form" --quiet
-    for view in shaded vertex-normal tangent bitangent; do
-        "$bin/cw2" "$work/$form.cw2mesh" --output "$work/$form-$view.exr" --view $view "${face[@]}"
-    done
 done
+
+# Draws the lines of standard input, two at a time: SCENE NAME OPTION...
+draw() {
+    # shellcheck disable=SC2016 # the inner shell expands these
+    xargs -P2 -L1 bash -c 'cw2=$0 scene=$1/$2.cw2mesh name=$3
+        shift 3
+        exec "$cw2" "$scene" --output "$name" "$@"' "$bin/cw2" "$work"
+}
+
+court='--camera-position 7.8,2.5,2.3 --camera-target -1.5,2.15,-0.3 --light-color 2.5,2.4,2.2'
+day="$court --light-position 4,7,5"
+against="$court --light-position -6,5,-1"
+lion='--camera-position 2.6,2.6,3 --camera-target 1.15,2.35,1.15 --light-color 2,2,2'
+plants='--camera-position 9.35,1.5,0.35 --camera-target 5.9,1.15,-2.9 --light-position 8,5,3
+        --light-color 2.2,2.2,2.2'
+plants=${plants//$'\n'/}
+chain='--camera-position 7.6,1.25,0.2 --camera-target 8.61,0.6,-2.59 --fov 18
+       --light-position 7,4,3 --light-color 2,2,2'
+chain=${chain//$'\n'/}
+tiles='--camera-position 2.1,1.35,-4.6 --camera-target 2,1.15,-6 --fov 42
+       --light-position 0.6,2.1,-5.65 --light-color 5,4.8,4.6'
+tiles=${tiles//$'\n'/}
+brow='--camera-position 2,2.6,2.4 --camera-target 1.15,2.55,1.15 --fov 30
+      --light-position 3.5,4,0.5 --light-color 1.6,1.6,1.6'
+brow=${brow//$'\n'/}
+
+draw <<END
+quat48 courtyard.png --size 960x540 $day --time 5.4
+quat48 figures/court.png --size 640x360 $day
+quat48 figures/lion.png --size 640x360 $lion --light-position 5,4.5,2.5
+quat48 figures/plants.png --size 640x360 $plants
+quat48 figures/tiles.png --size 640x360 $tiles --split shaded:no-normal-map,shaded
+END
+
+sed 's/^\([^ ]*\)/quat48 figures\/\1.png --size 320x180/' <<END | draw
+normal $day --view normal
+view-direction $day --view view-direction
+light-direction $day --view light-direction
+light-front $court --light-position 4,7,5
+light-low $court --light-position 7,1.2,3.5
+light-arcade $court --light-position 3.2,3,-2.8
+light-behind $court --light-position -6,1.6,-1
+lion-right $lion --fov 42 --light-position 5,4.5,2.5
+lion-left $lion --fov 42 --light-position 0,4,5
+lion-above $lion --fov 42 --light-position 2,6,1.2
+lion-behind $lion --fov 42 --light-position 2.4,4.5,-2.8
+diffuse $day --view diffuse
+specular $day --view specular --exposure 2
+specular-range $day --view specular --false-color 0.001,10
+distribution $lion --fov 42 --light-position 5,4.5,2.5 --view distribution --exposure -2
+distribution-range $lion --fov 42 --light-position 5,4.5,2.5 --view distribution --false-color auto
+masking $against --view masking
+fresnel $against --view fresnel
+foliage-whole $plants --no-alpha-mask
+foliage $plants
+chain-whole $chain --no-alpha-mask
+chain $chain
+brow-flat $brow --no-normal-map
+brow $brow
+tiles-vertex-normal $tiles --view vertex-normal
+tiles-normal $tiles --view normal
+brow-vertex-normal $brow --view vertex-normal
+brow-normal $brow --view normal
+END
+
+# The lion's face, each form of its frames beside the exact one.
+face='--size 256x256 --samples 1 --camera-position 2.6,2.6,3 --camera-target 1.15,2.35,1.15
+      --light-position 5,4.5,2.5 --light-color 2,2,2'
+for form in "${forms[@]}"; do
+    for view in shaded vertex-normal tangent bitangent; do
+        echo "$form \"$work/$form-$view.exr\" --view $view" ${face//$'\n'/}
+    done
+done | draw
 "$bin/frame_figure" tangent-frames.png "$work" "${forms[@]}"
+
+./page.sh "$build"

@@ -19,13 +19,13 @@
 #include <vector>
 
 #include "cw2/image_file.h"
+#include "cw2/legend.h"
+#include "shaders/false_color.h"
 
 namespace {
 
-// The scale is logarithmic: decades of a degree.
-constexpr double kSmallest = 1e-4;
-constexpr double kLargest = 10.0;
-constexpr int kLegendHeight = 24;
+constexpr cw2::ValueRange kDegrees{1e-4f, 10.0f};
+constexpr int kLegendHeight = 63;
 
 struct Picture {
     int width = 0;
@@ -75,22 +75,6 @@ double angle_between(const Frames& a, const Frames& b, std::size_t pixel) {
     return 2.0 * std::asin(sine) * 180.0 / 3.14159265358979;
 }
 
-/// Black over blue, magenta and orange to white for t in [0, 1].
-glm::vec3 false_color(double t) {
-    static const glm::vec3 kStops[] = {{0.0f, 0.0f, 0.05f},
-                                       {0.1f, 0.1f, 0.55f},
-                                       {0.65f, 0.1f, 0.55f},
-                                       {0.98f, 0.5f, 0.1f},
-                                       {1.0f, 0.98f, 0.75f}};
-    const double at = std::clamp(t, 0.0, 1.0) * 4.0;
-    const int stop = std::min(static_cast<int>(at), 3);
-    return glm::mix(kStops[stop], kStops[stop + 1], static_cast<float>(at - stop));
-}
-
-double scale_of(double degrees) {
-    return std::log(std::max(degrees, 1e-30) / kSmallest) / std::log(kLargest / kSmallest);
-}
-
 std::uint8_t encode_srgb(float linear) {
     const float x = std::clamp(linear, 0.0f, 1.0f);
     const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
@@ -101,7 +85,7 @@ std::uint8_t encode_srgb(float linear) {
 class Canvas {
  public:
     Canvas(int width, int height) : width_(width), height_(height) {
-        bytes_.resize(static_cast<std::size_t>(width) * height * 4, std::byte{255});
+        bytes_.resize(static_cast<std::size_t>(width) * height * 4, std::byte{24});
     }
     /// `encoded`: components as the PNG holds them.
     void set(int x, int y, const glm::u8vec3& encoded) {
@@ -109,6 +93,10 @@ class Canvas {
             bytes_[(static_cast<std::size_t>(y) * width_ + x) * 4 + channel] =
                 static_cast<std::byte>(encoded[channel]);
         }
+    }
+    void draw_legend() {
+        const auto width = static_cast<std::uint32_t>(width_);
+        cw2::draw_legend(bytes_, width, static_cast<std::uint32_t>(height_), 0, width, kDegrees);
     }
     void save(const std::string& path) const {
         cw2::write_image(path, static_cast<std::uint32_t>(width_),
@@ -119,10 +107,6 @@ class Canvas {
     int width_, height_;
     std::vector<std::byte> bytes_;
 };
-
-glm::u8vec3 to_bytes(const glm::vec3& color) {
-    return glm::u8vec3(255.0f * color + 0.5f);
-}
 
 void draw_shaded(Canvas& canvas, int left, const Picture& shaded) {
     for (int y = 0; y < shaded.height; ++y) {
@@ -148,23 +132,13 @@ void draw_error(Canvas& canvas, int left, int top, const Frames& frames, const F
             sum += angle;
             worst = std::max(worst, angle);
             ++count;
-            canvas.set(left + x, top + y, to_bytes(false_color(scale_of(angle))));
+            const float position = cw2::interop::false_color_position(static_cast<float>(angle),
+                                                                      kDegrees.low, kDegrees.high);
+            canvas.set(left + x, top + y, cw2::false_color_bytes(position));
         }
     }
     fmt::print("{}: mean {:.5f}, worst {:.5f} degrees over {} pixels\n", form,
                sum / static_cast<double>(std::max<std::size_t>(count, 1)), worst, count);
-}
-
-/// The scale from kSmallest to kLargest, white lines at the decades.
-void draw_legend(Canvas& canvas, int width, int top) {
-    for (int x = 0; x < width; ++x) {
-        const double t = (x + 0.5) / width;
-        const double decade = t * 5.0;
-        const bool line = decade - std::floor(decade) < 5.0 / width && x > 0;
-        for (int y = 4; y < kLegendHeight; ++y) {
-            canvas.set(x, top + y, line ? glm::u8vec3(255) : to_bytes(false_color(t)));
-        }
-    }
 }
 
 }  // namespace
@@ -187,7 +161,7 @@ int main(int argc, char** argv) {
             draw_shaded(canvas, left, read(directory + forms[i] + "-shaded.exr"));
             draw_error(canvas, left, height, Frames(directory + forms[i]), truth, forms[i]);
         }
-        draw_legend(canvas, total, 2 * height);
+        canvas.draw_legend();
         canvas.save(argv[1]);
         return 0;
     } catch (const std::exception& error) {
