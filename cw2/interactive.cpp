@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <glm/common.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,8 @@
 #include "cw2/file_watch.h"
 #include "cw2/image_file.h"
 #include "cw2/panel.h"
+#include "cw2/picker.h"
+#include "cw2/pointer.h"
 #include "cw2/presenter.h"
 #include "cw2/scene.h"
 #include "cw2/shader_compiler.h"
@@ -104,6 +107,7 @@ class Session {
               load_scene(device, layouts_, options.scene, texture_settings(options, device)))),
           presenter_(device, surface, layouts_, built_in_shaders(),
                      static_cast<VkSampleCountFlagBits>(*options.samples)),
+          picker_(device, layouts_, built_in_shaders()),
           state_(completed(options, scene_->start()), scene_->bounds(), aspect_of(window.extent())),
           title_(window, options.scene.filename().string()) {}
 
@@ -119,7 +123,7 @@ class Session {
         const bool extent_changed = !same(extent_, window_.extent());
         extent_ = window_.extent();
         if (panel_shown_) run_panel(input);
-        turn_by_mouse(input);
+        follow_the_mouse(input);
         for (const Command& command : input.commands) obey(command);
         const Clock::time_point now = Clock::now();
         const double seconds = std::chrono::duration<double>(now - last_step_).count();
@@ -129,6 +133,7 @@ class Session {
         // A CPU has better things to do than to draw the same again.
         const bool drawn = (stale_ || unshown_ || panel_shown_ || draws_always_) && draw();
         if (drawn) {
+            if (stale_ && panel_shown_) read_pick();
             stale_ = false;
             unshown_ = false;
         } else {
@@ -142,7 +147,7 @@ class Session {
 
     /// Shows the panel, lets it change the state, and takes out of `input` what was for it.
     void run_panel(Input& input) {
-        ui_->begin_frame(!turning_);
+        ui_->begin_frame(!pointer_.turns() && !pointer_.drags());
         std::erase_if(input.mouse_actions, [&](const MouseAction& action) {
             return action.pressed && ui_->wants_mouse();
         });
@@ -155,18 +160,21 @@ class Session {
             return !has_focus;
         });
         PanelState panel{state_.options(), state_.light_moves()};
-        const std::vector<Command> wishes = draw_panel({.device = device_.properties().deviceName,
-                                                        .bounds = scene_->bounds(),
-                                                        .extent = extent_,
-                                                        .times = presenter_.times(),
-                                                        .counts = presenter_.counts(),
-                                                        .triangles = scene_->triangle_count(),
-                                                        .scene_bytes = scene_->memory_bytes(),
-                                                        .image_bytes = presenter_.memory_bytes(),
-                                                        .message = message_,
-                                                        .message_is_error = message_is_error_,
-                                                        .scale = window_.content_scale()},
-                                                       panel);
+        const std::vector<Command> wishes = draw_panel(
+            {.device = device_.properties().deviceName,
+             .bounds = scene_->bounds(),
+             .extent = extent_,
+             .times = presenter_.times(),
+             .counts = presenter_.counts(),
+             .triangles = scene_->triangle_count(),
+             .scene_bytes = scene_->memory_bytes(),
+             .image_bytes = presenter_.memory_bytes(),
+             .pick = pick_,
+             .picked_material = pick_ ? scene_->material_names()[pick_->material] : std::string(),
+             .message = message_,
+             .message_is_error = message_is_error_,
+             .scale = window_.content_scale()},
+            panel);
         ui_->end_frame();
         input.commands.insert(input.commands.end(), wishes.begin(), wishes.end());
         if (panel.options == state_.options() && panel.light_moves == state_.light_moves()) return;
@@ -177,13 +185,42 @@ class Session {
         stale_ = true;
     }
 
-    void turn_by_mouse(const Input& input) {
-        for (const MouseAction& action : input.mouse_actions) {
-            if (action.button != MouseButton::right) continue;
-            turning_ = action.pressed;
-            if (turning_ && panel_shown_) ui_->drop_focus();
+    /// The mouse in the picture. `input` has nothing of what it did in the panel.
+    void follow_the_mouse(const Input& input) {
+        const Options& options = state_.options();
+        const Pointer::Picture picture{
+            .width = static_cast<float>(extent_.width),
+            .divider = options.split ? std::optional(options.divider) : std::nullopt,
+            .scale = window_.content_scale()};
+        const bool turned = pointer_.turns();
+        const Pointer::Wishes wishes = pointer_.follow(input.mouse_actions, input.cursor, picture);
+        if (pointer_.turns() && !turned && panel_shown_) ui_->drop_focus();
+        window_.hide_cursor(pointer_.turns());
+        if (wishes.divider && *wishes.divider != options.divider) {
+            Options moved = options;
+            moved.divider = *wishes.divider;
+            state_.set(moved, state_.light_moves());
+            stale_ = true;
         }
-        window_.hide_cursor(turning_);
+        if (wishes.clicked && panel_shown_) pick(*wishes.clicked);
+    }
+
+    /// Reads a pixel, from now on whenever the picture changes.
+    void pick(const glm::vec2& where) {
+        const glm::uvec2 pixel(glm::max(where, glm::vec2(0.0f)));
+        if (pixel.x >= extent_.width || pixel.y >= extent_.height) return;
+        picked_ = pixel;
+        read_pick();
+        if (pick_) {
+            fmt::print("{}\n", describe(*pick_, scene_->material_names()[pick_->material]));
+            std::fflush(stdout);
+        }
+    }
+
+    void read_pick() {
+        pick_.reset();
+        if (!picked_ || picked_->x >= extent_.width || picked_->y >= extent_.height) return;
+        pick_ = picker_.pick(*scene_, state_.settings(), extent_, *picked_);
     }
 
     void obey(const Command& command) {
@@ -252,7 +289,9 @@ class Session {
 
     void reload_shaders() {
         try {
-            presenter_.use_shaders(compile_shaders(sources_).code());
+            const CompiledShaders shaders = compile_shaders(sources_);
+            presenter_.use_shaders(shaders.code());
+            picker_.use_shaders(shaders.code());
             title_.set_error({});
             message_.clear();
             stale_ = true;
@@ -337,7 +376,11 @@ class Session {
     std::unique_ptr<Scene> scene_;
     Presenter presenter_;
     std::optional<UiPass> ui_;  ///< from when the panel is first shown
+    Picker picker_;
     ViewerState state_;
+    Pointer pointer_;
+    std::optional<glm::uvec2> picked_;  ///< the pixel whose numbers are read
+    std::optional<Pick> pick_;          ///< none: it shows the background
     Title title_;
     std::string message_;
     bool message_is_error_ = false;
@@ -345,9 +388,8 @@ class Session {
     Clock::time_point last_step_ = Clock::now();
     Clock::time_point last_look_ = Clock::now();
     bool panel_shown_ = false;
-    bool turning_ = false;  ///< the camera, by the mouse
-    bool stale_ = true;     ///< the picture is not the one that should be seen
-    bool unshown_ = true;   ///< the window does not show what it should
+    bool stale_ = true;    ///< the picture is not the one that should be seen
+    bool unshown_ = true;  ///< the window does not show what it should
     Shot wanted_ = Shot::none;
     int unsettled_ = 0;  ///< frames of the panel until it shows what the last events did
     bool idle_ = false;  ///< nothing happens until something is done

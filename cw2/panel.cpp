@@ -18,7 +18,8 @@ namespace {
 constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
 constexpr ImGuiColorEditFlags kColor =
     ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_NoLabel;
-constexpr float kLargest = 1e6f;  // coordinate and colour that can be entered
+constexpr float kLabelWidth = 7.5f;  // of what is at the left of a row, in font sizes
+constexpr float kLargest = 1e6f;     // coordinate and colour that can be entered
 
 struct KeyHelp {
     const char* keys;
@@ -28,6 +29,7 @@ constexpr std::array kKeys{
     KeyHelp{"Tab", "shows and hides this panel"},
     KeyHelp{"W A S D, E Q", "move the camera, up and down"},
     KeyHelp{"Shift, Ctrl", "faster, slower"},
+    KeyHelp{"left button", "reads a pixel; drags the divider"},
     KeyHelp{"right button", "turns the camera"},
     KeyHelp{"Space", "light's orbit on and off"},
     KeyHelp{"1 to 9, V, Shift+V", "views"},
@@ -56,14 +58,14 @@ void dim_text(const std::string& words) {
 void label(const char* name) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(name);
-    ImGui::SameLine(ImGui::GetFontSize() * 7.0f);
+    ImGui::SameLine(kLabelWidth * ImGui::GetFontSize());
     ImGui::SetNextItemWidth(-1.0f);
 }
 
 /// A row of a table of readings.
 void reading(const char* name, const std::string& value) {
     ImGui::TextUnformatted(name);
-    ImGui::SameLine(ImGui::GetFontSize() * 7.0f);
+    ImGui::SameLine(kLabelWidth * ImGui::GetFontSize());
     text(value);
 }
 
@@ -225,6 +227,54 @@ void frame_section(const PanelFacts& facts) {
     reading("", fmt::format("{:.1f} MiB images", mebibytes(facts.image_bytes)));
 }
 
+void pick_section(const PanelFacts& facts) {
+    if (!section("Pixel")) return;
+    if (!facts.pick) {
+        dim_text("click the picture to read the numbers of a pixel");
+        return;
+    }
+    const Pick& pick = *facts.pick;
+    const auto number = [](float value) { return fmt::format("{:.4g}", value); };
+    const auto vector = [](const glm::vec3& v) {
+        return fmt::format("{:<7.4g} {:<7.4g} {:.4g}", v.x, v.y, v.z);
+    };
+    const auto direction = [](const glm::vec3& v) {
+        return fmt::format("{:<7.4f} {:<7.4f} {:.4f}", v.x, v.y, v.z);
+    };
+    reading("pixel", fmt::format("{}, {}", pick.pixel.x, pick.pixel.y));
+    reading("material", facts.picked_material);
+    reading("position", vector(pick.position));
+    reading("normal n", direction(pick.normal));
+    reading("base colour", vector(pick.base_color));
+    reading("roughness", number(pick.roughness));
+    reading("metalness", number(pick.metalness));
+    ImGui::Separator();
+    reading("n.l", number(pick.n_dot_l()));
+    reading("n.v", number(pick.n_dot_v()));
+    reading("n.h", number(pick.n_dot_h()));
+    reading("v.h", number(pick.v_dot_h()));
+    ImGui::Separator();
+    reading("D", number(pick.distribution));
+    reading("G", number(pick.masking));
+    reading("F", vector(pick.fresnel));
+    reading("diffuse", vector(pick.diffuse));
+    reading("specular", vector(pick.specular));
+    reading("shaded", vector(pick.shaded));
+    // A cross-hair in the picture, black and white, so that it is seen on anything.
+    const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+    const ImVec2 at{(static_cast<float>(pick.pixel.x) + 0.5f) / scale.x,
+                    (static_cast<float>(pick.pixel.y) + 0.5f) / scale.y};
+    for (const auto& [thickness, ink] : {std::pair{3.0f, IM_COL32_BLACK}, {1.0f, IM_COL32_WHITE}}) {
+        const float width = thickness * facts.scale;
+        for (const float side : {-1.0f, 1.0f}) {
+            const float near = 4.0f * side * facts.scale, far = 10.0f * side * facts.scale;
+            ImDrawList* const list = ImGui::GetBackgroundDrawList();
+            list->AddLine({at.x + near, at.y}, {at.x + far, at.y}, ink, width);
+            list->AddLine({at.x, at.y + near}, {at.x, at.y + far}, ink, width);
+        }
+    }
+}
+
 /// A window of fixed width, as high as it must be, but never higher than the picture.
 void begin_window(const char* name, float left, float width, float scale) {
     const float margin = 8.0f * scale;
@@ -240,13 +290,14 @@ void begin_window(const char* name, float left, float width, float scale) {
 std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state) {
     std::vector<Command> commands;
     const float margin = 8.0f * facts.scale;
-    const float reading_width = 236.0f * facts.scale;
+    const float reading_width = 272.0f * facts.scale;
     begin_window("Readings", ImGui::GetIO().DisplaySize.x - reading_width - margin, reading_width,
                  facts.scale);
     frame_section(facts);
+    pick_section(facts);
     ImGui::End();
 
-    begin_window("cw2", margin, 326.0f * facts.scale, facts.scale);
+    begin_window("cw2", margin, 336.0f * facts.scale, facts.scale);
     view_section(state.options);
     light_section(state, facts.bounds);
     camera_section(state.options, commands);

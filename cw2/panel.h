@@ -10,6 +10,7 @@
 #include "cw2/camera.h"
 #include "cw2/input.h"
 #include "cw2/options.h"
+#include "cw2/picker.h"
 #include "cw2/presenter.h"
 
 namespace cw2 {
@@ -24,7 +25,9 @@ struct PanelFacts {
     std::uint64_t triangles;    ///< of the whole scene
     std::uint64_t scene_bytes;  ///< device memory of geometry and textures
     std::uint64_t image_bytes;  ///< device memory of what is drawn into
-    std::string message;        ///< the latest; empty for none
+    std::optional<Pick> pick;   ///< of the pixel that was clicked
+    std::string picked_material;
+    std::string message;  ///< the latest; empty for none
     bool message_is_error;
     float scale;  ///< pixels of a length of 1
 };

@@ -64,7 +64,8 @@ interop::SceneUniforms scene_uniforms(const Scene& scene, VkExtent2D extent,
     return uniforms;
 }
 
-PipelineKey pipeline_key(const Draw& draw, const Side& side, const FrameSettings& settings) {
+PipelineKey pipeline_key(const Draw& draw, Side side, const FrameSettings& settings) {
+    if (settings.one_pipeline) side.view = interop::kViewOfDisplay;
     return {.shading = draw.shading,
             .forms = draw.forms,
             .side = side,
@@ -82,13 +83,41 @@ interop::DrawConstants draw_constants(const Draw& draw, const MaterialOverrides&
 }
 
 interop::DisplayConstants display_constants(const Side& side, const FrameSettings& settings) {
-    interop::DisplayConstants constants{.exposure = std::exp2(settings.exposure)};
+    interop::DisplayConstants constants{.exposure = std::exp2(settings.exposure),
+                                        .view = side.view};
     if (settings.false_color) {
         const ValueRange range = settings.false_color->range_of(side.view);
         constants.false_color_low = range.low;
         constants.false_color_high = range.high;
     }
     return constants;
+}
+
+VkRect2D area_of(const FrameTarget& target) {
+    return target.area.value_or(VkRect2D{{0, 0}, target.extent});
+}
+
+/// What of `area` is in the columns from `left` to before `right`.
+VkRect2D columns_of(const VkRect2D& area, std::uint32_t left, std::uint32_t right) {
+    const auto begin = static_cast<std::uint32_t>(area.offset.x);
+    const std::uint32_t low = std::max(left, begin);
+    const std::uint32_t high = std::max(low, std::min(right, begin + area.extent.width));
+    return {{static_cast<std::int32_t>(low), area.offset.y}, {high - low, area.extent.height}};
+}
+
+/// Makes the part of the clip space of a picture that shows `area` a whole one.
+glm::mat4 clip_from_picture(const VkRect2D& area, VkExtent2D extent) {
+    const glm::vec2 low = glm::vec2(area.offset.x, area.offset.y);
+    const glm::vec2 size = glm::vec2(area.extent.width, area.extent.height);
+    const glm::vec2 whole = glm::vec2(extent.width, extent.height);
+    const glm::vec2 scale = whole / size;
+    const glm::vec2 offset = (whole - 2.0f * low - size) / size;
+    glm::mat4 clip(1.0f);
+    clip[0][0] = scale.x;
+    clip[1][1] = scale.y;
+    clip[3][0] = offset.x;
+    clip[3][1] = offset.y;
+    return clip;
 }
 
 /// A white line, a pixel to either side of where the columns of the right side begin.
@@ -201,7 +230,7 @@ void Renderer::begin_attachments(VkCommandBuffer commands, const FrameTarget& ta
                                           .storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
                                           .clearValue = {.depthStencil = {.depth = 0.0f}}};
     const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                               .renderArea = {{0, 0}, target.extent},
+                               .renderArea = area_of(target),
                                .layerCount = 1,
                                .colorAttachmentCount = 1,
                                .pColorAttachments = &color,
@@ -216,11 +245,13 @@ void Renderer::begin_attachments(VkCommandBuffer commands, const FrameTarget& ta
 }
 
 void Renderer::draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
-                          VkExtent2D extent, const FrameSettings& settings) {
-    const std::uint32_t end = settings.split ? settings.split->column(extent.width) : extent.width;
+                          const FrameTarget& target, const FrameSettings& settings) {
+    const VkRect2D area = area_of(target);
+    const std::uint32_t end =
+        settings.split ? settings.split->column(target.extent.width) : target.extent.width;
     const auto draw = [&](const Side& side, std::uint32_t left, std::uint32_t right) {
-        if (left == right) return;
-        const VkRect2D scissor{{static_cast<std::int32_t>(left), 0}, {right - left, extent.height}};
+        const VkRect2D scissor = columns_of(area, left, right);
+        if (scissor.extent.width == 0) return;
         vkCmdSetScissor(commands, 0, 1, &scissor);
         const interop::DisplayConstants display = display_constants(side, settings);
         // The two layouts have the same push constants: what is pushed through one is there for
@@ -231,8 +262,8 @@ void Renderer::draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, c
     };
     draw(settings, 0, end);
     if (!settings.split) return;
-    draw(settings.split->right, end, extent.width);
-    draw_divider(commands, end, extent);
+    draw(settings.split->right, end, target.extent.width);
+    draw_divider(commands, end, target.extent);
 }
 
 void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
@@ -288,12 +319,13 @@ void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene&
     const std::size_t built_before = pipelines_.built();
     const interop::SceneUniforms uniforms = scene_uniforms(scene, target.extent, settings);
     std::memcpy(slots_[slot].uniforms.mapped.data(), &uniforms, sizeof uniforms);
-    find_visible(scene.chunks(), scene.draws(), uniforms.projCam, settings.camera.position,
-                 visible_);
+    find_visible(scene.chunks(), scene.draws(),
+                 clip_from_picture(area_of(target), target.extent) * uniforms.projCam,
+                 settings.camera.position, visible_);
     if (timestamps_) vkCmdResetQueryPool(commands, timestamps_.get(), 2 * slot, 2);
     write_timestamp(commands, VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, 2 * slot);
     begin_attachments(commands, target, settings);
-    draw_sides(commands, slots_[slot].set, scene, target.extent, settings);
+    draw_sides(commands, slots_[slot].set, scene, target, settings);
     vkCmdEndRendering(commands);
     counts_.new_pipelines = pipelines_.built() != built_before;
     write_timestamp(commands, VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 2 * slot + 1);

@@ -25,7 +25,8 @@ struct FrameTarget {
     VkExtent2D extent;
     /// The stage that whoever waits for the image's availability blocks.
     VkPipelineStageFlags2 available_at;
-    ImageUse after;  ///< what it is used for next
+    ImageUse after;                               ///< what it is used for next
+    std::optional<VkRect2D> area = std::nullopt;  ///< that is drawn; none: all of it
 };
 
 /// What every material has instead of its own.
@@ -55,6 +56,9 @@ struct FrameSettings : Side {
     glm::vec3 background{0.1f};             ///< linear
     float exposure = 0.0f;                  ///< stops: values are multiplied by 2^exposure
     std::optional<FalseColor> false_color;  ///< in place of the exposure
+    /// One pipeline draws every view, and what interop.h says can be read: for those who want many
+    /// views of little. It is slower than one made for a view.
+    bool one_pipeline = false;
 };
 
 /// What is left of a scene after culling.
@@ -106,7 +110,7 @@ class Renderer {
     void begin_attachments(VkCommandBuffer commands, const FrameTarget& target,
                            const FrameSettings& settings) const;
     void draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
-                    VkExtent2D extent, const FrameSettings& settings);
+                    const FrameTarget& target, const FrameSettings& settings);
     void draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
                       const Side& side, const FrameSettings& settings);
     void write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 stage,

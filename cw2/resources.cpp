@@ -131,8 +131,15 @@ void image_barrier(VkCommandBuffer commands, VkImage image, VkImageAspectFlags a
 }
 
 void read_back(VkCommandBuffer commands, VkImage image, VkExtent2D extent, const Buffer& buffer) {
-    const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                 .imageExtent = {extent.width, extent.height, 1}};
+    read_back(commands, image, {{0, 0}, extent}, buffer, 0);
+}
+
+void read_back(VkCommandBuffer commands, VkImage image, const VkRect2D& area, const Buffer& buffer,
+               VkDeviceSize offset) {
+    const VkBufferImageCopy copy{.bufferOffset = offset,
+                                 .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                 .imageOffset = {area.offset.x, area.offset.y, 0},
+                                 .imageExtent = {area.extent.width, area.extent.height, 1}};
     vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                            buffer.handle.get(), 1, &copy);
     const VkMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,

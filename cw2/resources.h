@@ -68,6 +68,9 @@ void image_barrier(VkCommandBuffer commands, VkImage image, VkImageAspectFlags a
 /// Copies level 0 of a colour image, in layout TRANSFER_SRC_OPTIMAL, to the start of `buffer`,
 /// tightly packed, for the host to read once the commands are done.
 void read_back(VkCommandBuffer commands, VkImage image, VkExtent2D extent, const Buffer& buffer);
+/// The same for an area of it, to `offset` in the buffer.
+void read_back(VkCommandBuffer commands, VkImage image, const VkRect2D& area, const Buffer& buffer,
+               VkDeviceSize offset);
 
 /// A pool for `sets` descriptor sets that together hold `descriptors` of one type.
 DescriptorPool make_descriptor_pool(const Device& device, VkDescriptorType type,

@@ -137,6 +137,7 @@ interop::DrawConstants constants_of(const Document& document, const MeshRecord& 
     constants.normal_map = normal_map_of(document, material);
     constants.normal_scale = material.normal_scale;
     constants.back_normals = material.flags & mesh_format::kFlipBackNormals ? -1.0f : 1.0f;
+    constants.material = mesh.material;
     return constants;
 }
 
@@ -164,6 +165,9 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
     upload_textures(device, document, settings.decode_blocks, uploader);
     uploader.finish();
 
+    for (const MaterialRecord& material : document.materials) {
+        material_names_.emplace_back(document.text(material.name));
+    }
     const std::vector<VkDescriptorSet> sets = make_material_sets(device, layouts, document);
     for (const MeshRecord& mesh : document.meshes) {
         const MaterialRecord& material = document.materials[mesh.material];

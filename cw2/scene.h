@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "cw2/camera.h"
@@ -57,6 +58,8 @@ class Scene {
     const std::vector<SceneChunk>& chunks() const { return chunks_; }
     VkBuffer vertices() const { return vertices_.handle.get(); }
     VkBuffer indices() const { return indices_.handle.get(); }
+    /// Indexed by DrawConstants::material.
+    const std::vector<std::string>& material_names() const { return material_names_; }
     std::uint64_t triangle_count() const;
     /// Device memory that geometry and textures take.
     VkDeviceSize memory_bytes() const;
@@ -84,6 +87,7 @@ class Scene {
     Sampler repeat_;
     Sampler clamp_;
     DescriptorPool descriptor_pool_;
+    std::vector<std::string> material_names_;
     std::vector<Draw> draws_;
     std::vector<SceneChunk> chunks_;
 };

@@ -56,6 +56,7 @@ struct DrawConstants {
     uint normal_map;     // kNormalMapAbsent...
     float normal_scale;  // multiplies x and y of what the normal map holds
     float back_normals;  // multiplies the normals of back faces: 1 or -1
+    uint material;       // index
 };
 
 // Push constants after those, at kDisplayOffset: how a view's values become colours.
@@ -63,6 +64,7 @@ struct DisplayConstants {
     float exposure;          // factor on the values
     float false_color_low;   // values from low to high have the whole range of colours,
     float false_color_high;  // see false_color.h
+    uint view;               // what kViewOfDisplay shows
 };
 CW2_CONSTANT uint kDisplayOffset = 80;
 
@@ -106,11 +108,16 @@ CW2_CONSTANT uint kViewBitangent = 14;
 CW2_CONSTANT uint kViewUv = 15;
 CW2_CONSTANT uint kViewAlphaMask = 16;
 CW2_CONSTANT uint kViewCount = 17;
+// Further values that can be read, though they make no picture.
+CW2_CONSTANT uint kReadPosition = 17;  // world
+CW2_CONSTANT uint kReadMaterial = 18;  // index
+// What DisplayConstants say, so that one pipeline serves every view.
+CW2_CONSTANT uint kViewOfDisplay = 19;
 
 #ifdef __cplusplus
 static_assert(offsetof(SceneUniforms, cameraPosition) == 192);
 static_assert(offsetof(SceneUniforms, ambientColor) == 240 && sizeof(SceneUniforms) == 256);
-static_assert(offsetof(DrawConstants, base_color) == 32 && sizeof(DrawConstants) == 68);
+static_assert(offsetof(DrawConstants, base_color) == 32 && sizeof(DrawConstants) == 72);
 static_assert(kDisplayOffset >= sizeof(DrawConstants) && kDisplayOffset % 16 == 0);
 }  // namespace cw2::interop
 #endif

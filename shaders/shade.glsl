@@ -66,7 +66,7 @@ vec3 view_color(float alpha_mask) {
     const vec3 l = dot(to_light, to_light) > 0.0 ? normalize(to_light) : surface.normal;
     const vec3 v = normalize(scene.cameraPosition - world_position);
     const Brdf brdf = evaluate_brdf(surface, l, v);
-    switch (view) {
+    switch (view == kViewOfDisplay ? display.view : view) {
         case kViewNormal: return as_color(surface.normal);
         case kViewVertexNormal: return as_color(vertex_normal());
         case kViewViewDirection: return as_color(v);
@@ -84,6 +84,8 @@ vec3 view_color(float alpha_mask) {
             return as_color(normalize(handedness * cross(world_normal, world_tangent)));
         case kViewUv: return vec3(fract(uv), 0.0);
         case kViewAlphaMask: return vec3(alpha_mask);
+        case kReadPosition: return world_position;
+        case kReadMaterial: return vec3(draw.material);
     }
     return scene.ambientColor * surface.base_color +
            scene.lightColor * (brdf.diffuse * brdf.n_dot_l + brdf.specular_n_dot_l);

@@ -13,7 +13,7 @@ source "${0%/*}/session.sh"
 # What the render tests see the stage with.
 camera=(--camera-position 0.3,1.6,4.3 --camera-target 0,0.75,0 --fov 42 --light-position 2.5,3.5,3)
 options=(--size 256x144 --samples 1 "${camera[@]}")
-large=(--size 640x480 --samples 1 "${camera[@]}")
+large=(--size 780x480 --samples 1 "${camera[@]}")
 
 check_shows_the_headless_picture() {
     open_window "$cw2" "$scene" "${options[@]}"
@@ -221,7 +221,7 @@ check_gives_keys_to_the_panel_while_it_has_the_focus() {
     xdotool keyup w
     expect_same "$start" "$picture"
     # Between the panel's parts, which gives the keys back.
-    xdotool mousemove --window "$window" 365 240 click 1
+    xdotool mousemove --window "$window" 420 50 click 1
     xdotool keydown w
     wait_until picture_differs_from "$start"
     xdotool keyup w
@@ -268,6 +268,36 @@ check_reloads_the_scene() {
         same "$start" "$picture"
     }
     wait_until picture_is_as_before
+    close_window
+}
+
+# Presses and lets go a mouse button at X Y; the window draws in between, as it does for a user.
+click() {
+    xdotool mousemove --window "$window" "$1" "$2" mousedown "${3:-1}"
+    sleep 0.1
+    xdotool mouseup "${3:-1}"
+}
+
+check_reads_the_numbers_of_a_pixel() {
+    open_window "$cw2" "$scene" "${large[@]}"
+    take_picture
+    # Without the panel a click does nothing.
+    click 420 400
+    press Tab
+    take_window_picture
+    local panel=$picture
+    has_lines "$work/out" 3 && fail "a click that was not asked for: $(tail -n 1 "$work/out")"
+    click 420 400
+    wait_until has_lines "$work/out" 3
+    [[ $(tail -n 1 "$work/out") == "pixel 420,400: material floor; position "*"; D "*"; shaded "* ]] ||
+        fail "read: $(tail -n 1 "$work/out")"
+    wait_until window_picture_differs_from "$panel"
+    # Not on the panel, nor with the other button, nor where nothing is.
+    click 20 300
+    click 420 400 3
+    click 420 12
+    take_picture
+    [[ $(tail -n 2 "$work/out" | head -n 1) == *.png ]] || fail "read: $(tail -n 2 "$work/out")"
     close_window
 }
 

@@ -1,0 +1,49 @@
+#include "cw2/pointer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace cw2 {
+
+namespace {
+
+// Lengths, in pixels at scale 1.
+constexpr float kReach = 6.0f;       // from the divider
+constexpr float kSteadyHand = 4.0f;  // that a click may be long
+
+}  // namespace
+
+bool Pointer::at_divider(glm::vec2 cursor, const Picture& picture) {
+    return picture.divider &&
+           std::abs(cursor.x - *picture.divider * picture.width) <= kReach * picture.scale;
+}
+
+Pointer::Wishes Pointer::follow(std::span<const MouseAction> actions, glm::vec2 cursor,
+                                const Picture& picture) {
+    Wishes wishes;
+    const auto drag_to = [&](glm::vec2 where) {
+        if (drags_) wishes.divider = std::clamp(where.x / picture.width, 0.0f, 1.0f);
+    };
+    for (const MouseAction& action : actions) {
+        if (action.button == MouseButton::right) {
+            turns_ = action.pressed;
+            pressed_.reset();
+        } else if (action.pressed) {
+            drags_ = at_divider(action.cursor, picture);
+            if (!drags_ && !turns_) pressed_ = action.cursor;
+        } else {
+            drag_to(action.cursor);
+            drags_ = false;
+            if (pressed_ &&
+                glm::distance(*pressed_, action.cursor) <= kSteadyHand * picture.scale) {
+                wishes.clicked = pressed_;
+            }
+            pressed_.reset();
+        }
+    }
+    drag_to(cursor);
+    return wishes;
+}
+
+}  // namespace cw2

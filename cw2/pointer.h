@@ -1,0 +1,39 @@
+// What the mouse does in the picture: turns the camera, drags the divider, or points at a pixel.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <optional>
+#include <span>
+
+#include "cw2/input.h"
+
+namespace cw2 {
+
+class Pointer {
+ public:
+    struct Picture {
+        float width;                   ///< pixels
+        std::optional<float> divider;  ///< of a split view, in [0, 1] of the width
+        float scale;                   ///< pixels of a length of 1
+    };
+    struct Wishes {
+        std::optional<glm::vec2> clicked;  ///< pixels
+        std::optional<float> divider;      ///< where it is dragged to
+    };
+
+    /// What the buttons did since the last call, and the cursor now does, where both are the
+    /// picture's.
+    Wishes follow(std::span<const MouseAction> actions, glm::vec2 cursor, const Picture& picture);
+
+    bool turns() const { return turns_; }
+    bool drags() const { return drags_; }
+    /// Whether a press there would take hold of the divider.
+    static bool at_divider(glm::vec2 cursor, const Picture& picture);
+
+ private:
+    bool turns_ = false;
+    bool drags_ = false;
+    std::optional<glm::vec2> pressed_;  ///< where, while this may become a click
+};
+
+}  // namespace cw2
