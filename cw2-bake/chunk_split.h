@@ -23,33 +23,30 @@ inline std::size_t part_count(std::size_t count) {
                : part_count(count / 2) + part_count(count - count / 2);
 }
 
-/// Brings the smaller half of `triangles` along the longest side of their bounding box to the
-/// front; of equal ones those of the smaller index.
-void halve(std::span<CentredTriangle> triangles);
+/// Copies the half of `triangles` that comes first along the longest side of their bounding box
+/// (of equal ones those of smaller index) to the front of `out`, and the others behind it; each
+/// half keeps its order. The indices ascend.
+void halve(std::span<const CentredTriangle> triangles, std::span<CentredTriangle> out);
 
-/// Back to the source's order.
-void sort_by_index(std::span<CentredTriangle> triangles);
-
-/// Orders `triangles` so that each part's follow each other, in the source's order, and calls
-/// done(part, begin, end) once a part is; in parallel for different parts.
+/// Halves `triangles`, whose indices ascend, until they are parts of at most kMaxChunkTriangles,
+/// and calls done(part, triangles, begin) for each, where the parts before it hold `begin`
+/// triangles; in parallel for different parts. `spare` is as large as `triangles`; both are
+/// overwritten. Indices ascend within a part, too.
 template <typename Done>
-void split(std::span<CentredTriangle> triangles, const Done& done, std::size_t first_part = 0,
-           std::size_t first_triangle = 0) {
-    const std::size_t half = triangles.size() / 2;
-    if (part_count(triangles.size()) == 1) {
-        // The order must not depend on how the halves were found.
-        sort_by_index(triangles);
-        done(first_part, first_triangle, first_triangle + triangles.size());
-        return;
-    }
-    halve(triangles);
-    const auto low = [&] { split(triangles.first(half), done, first_part, first_triangle); };
+void split(std::span<CentredTriangle> triangles, std::span<CentredTriangle> spare, const Done& done,
+           std::size_t part = 0, std::size_t begin = 0) {
+    const std::size_t size = triangles.size();
+    if (part_count(size) == 1) return done(part, triangles, begin);
+    halve(triangles, spare);
+    const std::size_t half = size / 2;
+    const auto low = [&] { split(spare.first(half), triangles.first(half), done, part, begin); };
     const auto high = [&] {
-        split(triangles.subspan(half), done, first_part + part_count(half), first_triangle + half);
+        split(spare.subspan(half), triangles.subspan(half), done, part + part_count(half),
+              begin + half);
     };
     // Below this many triangles a task of its own costs more than it saves.
     constexpr std::size_t kParallel = 4096;
-    if (triangles.size() >= kParallel) {
+    if (size >= kParallel) {
         tbb::parallel_invoke(low, high);
     } else {
         low();

@@ -1,6 +1,5 @@
 #include "cw2-bake/chunks.h"
 
-#include <meshoptimizer.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -9,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cw2-bake/chunk_bounds.h"
 #include "cw2-bake/chunk_split.h"
 #include "cw2-bake/triangle_order.h"
 
@@ -42,6 +42,7 @@ class UvLimit {
 struct FinishedChunk {
     ChunkRecord record;
     UvBox uvs;
+    Box<glm::vec3> positions{};
 };
 
 /// Makes chunks of the parts that a material's triangles are cut into; used by one thread.
@@ -59,7 +60,7 @@ class ChunkMaker {
         for (const std::uint32_t vertex : vertices_) uvs.add(scene_.uv(vertex));
         if (triangles.size() == 1 || !limit.exceeded_by(uvs)) {
             order(out);
-            chunks.push_back({bounds(first_index), uvs});
+            chunks.push_back(finished(first_index, uvs));
             return;
         }
         sort_by_uv(triangles, uvs.high.x - uvs.low.x >= uvs.high.y - uvs.low.y ? 0 : 1);
@@ -100,19 +101,12 @@ class ChunkMaker {
         }
     }
 
-    ChunkRecord bounds(std::uint32_t first_index) const {
-        const meshopt_Bounds bounds =
-            meshopt_computeClusterBounds(indices_.data(), indices_.size(), &positions_.front().x,
-                                         positions_.size(), sizeof(glm::vec3));
-        ChunkRecord record{.first_index = first_index,
-                           .index_count = static_cast<std::uint32_t>(indices_.size()),
-                           .radius = bounds.radius,
-                           .cone_cutoff = bounds.cone_cutoff};
-        for (int axis = 0; axis < 3; ++axis) {
-            record.center[axis] = bounds.center[axis];
-            record.cone_axis[axis] = bounds.cone_axis[axis];
-        }
-        return record;
+    FinishedChunk finished(std::uint32_t first_index, const UvBox& uvs) const {
+        FinishedChunk chunk{.record = bound_chunk(positions_, indices_), .uvs = uvs};
+        chunk.record.first_index = first_index;
+        chunk.record.index_count = static_cast<std::uint32_t>(indices_.size());
+        for (const glm::vec3& position : positions_) chunk.positions.add(position);
+        return chunk;
     }
 
     void sort_by_uv(std::span<CentredTriangle> triangles, int axis) const {
@@ -136,9 +130,8 @@ class ChunkMaker {
 /// Gathers the chunks of one material into meshes.
 class Assembler {
  public:
-    Assembler(const FramedScene& scene, std::uint32_t material, UvLimit limit,
-              std::vector<std::uint32_t>& placed)
-        : scene_(scene), material_(material), limit_(limit), placed_(placed) {}
+    Assembler(std::uint32_t material, UvLimit limit, std::vector<std::uint32_t>& placed)
+        : material_(material), limit_(limit), placed_(placed) {}
 
     void add(const FinishedChunk& chunk, std::span<const std::uint32_t> vertices) {
         UvBox merged = box_;
@@ -149,13 +142,13 @@ class Assembler {
         if (meshes_.empty() || !uvs_fit || !has_room(vertices)) start_mesh();
         box_.add(chunk.uvs);
         ChunkedMesh& mesh = meshes_.back();
+        mesh.positions.add(chunk.positions);
         mesh.chunks.push_back(chunk.record);
         mesh.chunks.back().first_index = static_cast<std::uint32_t>(mesh.indices.size());
         for (const std::uint32_t vertex : vertices) {
             if (placed_[vertex] == kNone) {
                 placed_[vertex] = static_cast<std::uint32_t>(mesh.vertices.size());
                 mesh.vertices.push_back(vertex);
-                mesh.positions.add(scene_.position(vertex));
             }
             mesh.indices.push_back(static_cast<std::uint16_t>(placed_[vertex]));
         }
@@ -191,7 +184,6 @@ class Assembler {
         for (const std::uint32_t vertex : mesh.vertices) placed_[vertex] = kNone;
     }
 
-    const FramedScene& scene_;
     std::uint32_t material_;
     UvLimit limit_;
     UvBox box_;                           // of the last mesh
@@ -244,12 +236,14 @@ std::vector<ChunkedMesh> make_chunks(const FramedScene& scene, std::span<const U
         const UvLimit limit(budgets[material]);
         std::vector<std::uint32_t> vertices(3 * triangles.size());
         std::vector<std::vector<FinishedChunk>> parts(part_count(triangles.size()));
-        split(triangles, [&](std::size_t part, std::size_t begin, std::size_t end) {
-            makers.local().make(
-                triangles.subspan(begin, end - begin), limit, static_cast<std::uint32_t>(3 * begin),
-                std::span(vertices).subspan(3 * begin, 3 * (end - begin)), parts[part]);
-        });
-        Assembler assembler(scene, material, limit, placed.local());
+        std::vector<CentredTriangle> spare(triangles.size());
+        split(triangles, spare,
+              [&](std::size_t part, std::span<CentredTriangle> members, std::size_t begin) {
+                  makers.local().make(members, limit, static_cast<std::uint32_t>(3 * begin),
+                                      std::span(vertices).subspan(3 * begin, 3 * members.size()),
+                                      parts[part]);
+              });
+        Assembler assembler(material, limit, placed.local());
         for (const auto& part : parts) {
             for (const FinishedChunk& chunk : part)
                 assembler.add(chunk, std::span(vertices).subspan(chunk.record.first_index,

@@ -1,9 +1,9 @@
 #include "cw2-bake/quantise.h"
 
-#include <meshoptimizer.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
@@ -19,6 +19,7 @@ namespace {
 using mesh_format::FrameForm;
 using mesh_format::MeshRecord;
 using mesh_format::PositionForm;
+using mesh_format::TangentFrame;
 using mesh_format::UvForm;
 
 /// Points of a 16-bit lattice along one side, less one.
@@ -65,13 +66,13 @@ double position_step(std::span<const ChunkedMesh> meshes) {
 
 /// The errors of some vertices, and sums for means over all.
 struct Errors {
-    double position = 0.0;
+    double square_position = 0.0;
     double frame_sum = 0.0;
     double frame_max = 0.0;
     double uv_texels = 0.0;
 
     void add(const Errors& other) {
-        position = std::max(position, other.position);
+        square_position = std::max(square_position, other.square_position);
         frame_sum += other.frame_sum;
         frame_max = std::max(frame_max, other.frame_max);
         uv_texels = std::max(uv_texels, other.uv_texels);
@@ -90,7 +91,12 @@ class MeshPacker {
  public:
     MeshPacker(const FramedScene& scene, const ChunkedMesh& mesh, const UvBudget& budget,
                double step, MeshRecord& record)
-        : scene_(scene), mesh_(mesh), step_(step), texels_(budget.texels), record_(record) {
+        : scene_(scene),
+          mesh_(mesh),
+          step_(step),
+          inverse_step_(1.0 / step),
+          texels_(budget.texels),
+          record_(record) {
         if (record.position_form == PositionForm::quantised) choose_position_origin();
         choose_uv_lattice(budget);
         set_bounds();
@@ -98,28 +104,45 @@ class MeshPacker {
 
     /// Writes vertices begin .. end - 1 of the mesh to `out`.
     Errors pack(std::size_t begin, std::size_t end, std::byte* out) const {
-        const auto layout =
-            mesh_format::vertex_layout(record_.position_form, record_.frame_form, record_.uv_form);
         Errors errors;
-        for (std::size_t i = begin; i < end; ++i, out += layout.stride) {
-            const std::uint32_t vertex = mesh_.vertices[i];
-            const double angle = pack_frame(vertex, out + layout.frame_offset);
-            errors.add({.position = pack_position(scene_.position(vertex), out),
-                        .frame_sum = angle,
-                        .frame_max = angle,
-                        .uv_texels = pack_uv(scene_.uv(vertex), out + layout.uv_offset)});
+        for (; begin < end; begin += kBatch) {
+            const std::size_t count = std::min(kBatch, end - begin);
+            errors.add(pack_batch(std::span(mesh_.vertices).subspan(begin, count), out));
         }
         return errors;
     }
 
  private:
+    /// Moves `out` behind what it writes.
+    Errors pack_batch(std::span<const std::uint32_t> vertices, std::byte*& out) const {
+        const auto layout =
+            mesh_format::vertex_layout(record_.position_form, record_.frame_form, record_.uv_form);
+        std::array<TangentFrame, kBatch> frames;
+        std::array<double, kBatch> degrees;
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            const glm::vec3& n = scene_.normal(vertices[i]);
+            const glm::vec4& t = scene_.framed.vertices[vertices[i]].tangent;
+            frames[i] = {{t.x, t.y, t.z}, {n.x, n.y, n.z}, t.w};
+        }
+        mesh_format::pack_frames(record_.frame_form, std::span(frames).first(vertices.size()),
+                                 out + layout.frame_offset, layout.stride, degrees.data());
+        Errors errors;
+        for (std::size_t i = 0; i < vertices.size(); ++i, out += layout.stride) {
+            errors.add({.square_position = pack_position(scene_.position(vertices[i]), out),
+                        .frame_sum = degrees[i],
+                        .frame_max = degrees[i],
+                        .uv_texels = pack_uv(scene_.uv(vertices[i]), out + layout.uv_offset)});
+        }
+        return errors;
+    }
+
     void choose_position_origin() {
         for (int axis = 0; axis < 3; ++axis)
             record_.origin[axis] = lattice(mesh_.positions.low, axis);
     }
 
     std::int32_t lattice(const glm::vec3& position, int axis) const {
-        return nearest(double{position[axis]} / step_);
+        return nearest(double{position[axis]} * inverse_step_);
     }
 
     /// By the arithmetic of shaders/mesh.vert.
@@ -159,7 +182,7 @@ class MeshPacker {
         }
     }
 
-    /// Returns the distance to the decoded position.
+    /// Returns the square distance to the decoded position.
     double pack_position(const glm::vec3& position, std::byte* out) const {
         if (record_.position_form == PositionForm::f32) {
             std::memcpy(out, &position, sizeof position);
@@ -173,15 +196,7 @@ class MeshPacker {
             const double error = double{decoded(point)} - position[axis];
             square += error * error;
         }
-        return std::sqrt(square);
-    }
-
-    /// Returns the angle between the true and the decoded frame, degrees.
-    double pack_frame(std::uint32_t vertex, std::byte* out) const {
-        const glm::vec3& n = scene_.normal(vertex);
-        const glm::vec4& t = scene_.framed.vertices[vertex].tangent;
-        return mesh_format::pack_frame(record_.frame_form, {{t.x, t.y, t.z}, {n.x, n.y, n.z}, t.w},
-                                       out);
+        return square;
     }
 
     /// Returns the error in texels.
@@ -203,9 +218,12 @@ class MeshPacker {
         return error;
     }
 
+    static constexpr std::size_t kBatch = 64;
+
     const FramedScene& scene_;
     const ChunkedMesh& mesh_;
     double step_;
+    double inverse_step_;  // exact: the step is a power of two
     double texels_;
     glm::dvec2 uv_shift_{0.0};
     MeshRecord& record_;
@@ -295,10 +313,11 @@ void finish_scene(PackedGeometry& geometry, const Box<glm::vec3>& box,
         geometry.scene.bounds_max[axis] = box.high[axis];
     }
     // The error is added so that the decoded vertices, too, lie within.
-    geometry.scene.radius = static_cast<float>(std::sqrt(square_radius) + all.position);
+    const double position_error = std::sqrt(all.square_position);
+    geometry.scene.radius = static_cast<float>(std::sqrt(square_radius) + position_error);
     geometry.scene.vertex_bytes = geometry.vertices.size();
     geometry.scene.index_count = geometry.indices.size();
-    geometry.scene.position_error = static_cast<float>(all.position);
+    geometry.scene.position_error = static_cast<float>(position_error);
     geometry.scene.frame_error_mean = static_cast<float>(all.frame_sum / vertices);
     geometry.scene.frame_error_max = static_cast<float>(all.frame_max);
     geometry.scene.uv_error = static_cast<float>(all.uv_texels);

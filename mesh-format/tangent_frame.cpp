@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "mesh-format/frame_constants.h"
+#include "mesh-format/frame_rotation.h"
 
 namespace mesh_format {
 namespace {
@@ -28,78 +29,23 @@ double dot(Vec3 a, Vec3 b) {
 Vec3 cross(Vec3 a, Vec3 b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-Vec3 scaled(Vec3 a, double s) {
-    return {a.x * s, a.y * s, a.z * s};
-}
 
 Vec3 wide(const float (&v)[3]) {
     return {v[0], v[1], v[2]};
 }
 
-/// `v` less its part along the unit vector `n`.
-Vec3 across(Vec3 v, Vec3 n) {
-    const double along = dot(v, n);
-    return {v.x - along * n.x, v.y - along * n.y, v.z - along * n.z};
-}
+/// A rotation as a quaternion x, y, z, w that is scaled so that its largest component is 1.
+using Quaternion = std::array<double, 4>;
 
-/// The coordinate axis that is farthest from +-n; the first of equals.
-Vec3 axis_far_from(Vec3 n) {
-    const double x = std::abs(n.x);
-    const double y = std::abs(n.y);
-    const double z = std::abs(n.z);
-    if (x <= y && x <= z) return {1, 0, 0};
-    return y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
-}
-
-/// A rotation as a quaternion x, y, z, w that is scaled so that q[largest] = 1.
-struct Rotation {
-    std::array<double, 4> q;
-    unsigned largest;
-};
-
-/// The rotation (t, cross(n, t), n) of `frame`, made orthonormal.
-Rotation rotation_of(const TangentFrame& frame) {
-    // A sine of 1e-6 is what float vectors of one direction may differ by.
-    constexpr double kParallelSquared = 1e-12;
-
-    Vec3 n = wide(frame.normal);
-    const double normal_squared = dot(n, n);
-    const bool has_normal = normal_squared > 0 && std::isfinite(normal_squared);
-    n = has_normal ? scaled(n, 1 / std::sqrt(normal_squared)) : Vec3{0, 0, 1};
-
-    Vec3 t = wide(frame.tangent);
-    const double full = dot(t, t);
-    t = across(t, n);
-    double squared = dot(t, t);
-    // False for NaN and for two infinities too.
-    if (!(squared > kParallelSquared * full)) {
-        t = across(axis_far_from(n), n);
-        squared = dot(t, t);
-    }
-    t = scaled(t, 1 / std::sqrt(squared));
-    const Vec3 b = cross(n, t);
-
-    // Every row of 4 q q^T is a multiple of q; the one with the largest diagonal is the most
-    // precise, and dividing by that diagonal makes the largest component +1, whatever its sign was.
-    const double diagonal[4] = {1 + t.x - b.y - n.z, 1 - t.x + b.y - n.z, 1 - t.x - b.y + n.z,
-                                1 + t.x + b.y + n.z};
-    const auto largest = static_cast<unsigned>(std::max_element(diagonal, diagonal + 4) - diagonal);
-    const double xy = t.y + b.x;
-    const double xz = t.z + n.x;
-    const double yz = b.z + n.y;
-    const double xw = b.z - n.y;
-    const double yw = n.x - t.z;
-    const double zw = t.y - b.x;
-    const std::array<double, 4> rows[4] = {
-        {diagonal[0], xy, xz, xw},
-        {xy, diagonal[1], yz, yw},
-        {xz, yz, diagonal[2], zw},
-        {xw, yw, zw, diagonal[3]},
-    };
-    Rotation rotation{rows[largest], largest};
-    const double inverse = 1 / diagonal[largest];
-    for (double& component : rotation.q) component *= inverse;
-    return rotation;
+Quaternion quaternion_of(const TangentFrame& frame) {
+    Rotations<1> rotation;
+    rotation.load(0, frame);
+    rotation.compute();
+    const auto largest = static_cast<std::size_t>(rotation.largest[0]);
+    Quaternion q{};
+    q[largest] = 1;
+    for (std::size_t k = 0; k < 3; ++k) q[k + (k >= largest)] = rotation.ratio[k][0];
+    return q;
 }
 
 /// The rotation matrix of a quaternion of any length but 0. Dividing by the squared length instead
@@ -129,18 +75,6 @@ float warped(float x) {
     return x * (1.0f + (1.0f - y) * p);
 }
 
-/// The three ratios, in the order of their components, each rounded to one of 2 * half + 1 levels.
-Digits digits_of(const Rotation& rotation, int half) {
-    Digits digits{};
-    for (unsigned k = 0; k < 3; ++k) {
-        const double ratio = rotation.q[k + (k >= rotation.largest)];
-        const double level = static_cast<double>(warped(static_cast<float>(ratio))) * half;
-        // Truncating a positive number plus one half rounds to nearest.
-        digits[k] = static_cast<std::uint32_t>(static_cast<int>(level + (half + 0.5)));
-    }
-    return digits;
-}
-
 float tan_quarter_pi(float x) {
     const float y = x * x;
     const float q = ((((kTanQ5 * y + kTanQ4) * y + kTanQ3) * y + kTanQ2) * y + kTanQ1) * y + kTanQ0;
@@ -161,36 +95,60 @@ TangentFrame frame_of_digits(const Digits& digits, int half, float inverse_half,
     return frame_of(q[0], q[1], q[2], q[3], left_handed);
 }
 
-/// The angle of the rotation between `rotation` and the one that the digits stand for, degrees.
-double angle_to(const Rotation& rotation, const Digits& digits, int half, float inverse_half) {
-    // With a and b the quaternions, |a|^2 |b|^2 sin^2(angle / 2) = |a|^2 |b|^2 - (a . b)^2, which
-    // is the sum over pairs of components of (a_i b_j - a_j b_i)^2: of small terms only.
-    double a[4];
-    double b[4];
-    a[0] = b[0] = 1;
-    for (unsigned k = 0; k < 3; ++k) {
-        a[k + 1] = rotation.q[k + (k >= rotation.largest)];
-        b[k + 1] = ratio_of(digits[k], half, inverse_half);
+/// Frames in digits, kLanes at a time, and how far they are from what they stand for.
+template <std::size_t kLanes>
+struct DigitLanes {
+    Rotations<kLanes> rotations;
+    std::int32_t digits[3][kLanes];
+    double degrees[kLanes];
+
+    void compute(int half, float inverse_half) {
+        rotations.compute();
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t i = 0; i < kLanes; ++i) {
+                const auto ratio = static_cast<float>(rotations.ratio[k][i]);
+                const double level = static_cast<double>(warped(ratio)) * half;
+                // Truncating a positive number plus one half rounds to nearest.
+                digits[k][i] = static_cast<std::int32_t>(level + (half + 0.5));
+                decoded_[k][i] =
+                    tan_quarter_pi(static_cast<float>(digits[k][i] - half) * inverse_half);
+            }
+        }
+        measure();
     }
-    double square_a = 0;
-    double square_b = 0;
-    double square_cross = 0;
-    for (int i = 0; i < 4; ++i) {
-        square_a += a[i] * a[i];
-        square_b += b[i] * b[i];
-        for (int j = i + 1; j < 4; ++j) {
-            const double cross = a[i] * b[j] - a[j] * b[i];
-            square_cross += cross * cross;
+
+    Digits of(std::size_t i) const {
+        return {static_cast<std::uint32_t>(digits[0][i]), static_cast<std::uint32_t>(digits[1][i]),
+                static_cast<std::uint32_t>(digits[2][i])};
+    }
+
+ private:
+    /// With a and b the quaternions, |a|^2 |b|^2 sin^2(angle / 2) = |a|^2 |b|^2 - (a . b)^2, which
+    /// is the sum over pairs of components of (a_i b_j - a_j b_i)^2: of small terms only.
+    void measure() {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const double a0 = rotations.ratio[0][i], b0 = decoded_[0][i];
+            const double a1 = rotations.ratio[1][i], b1 = decoded_[1][i];
+            const double a2 = rotations.ratio[2][i], b2 = decoded_[2][i];
+            const double square_a = 1 + a0 * a0 + a1 * a1 + a2 * a2;
+            const double square_b = 1 + b0 * b0 + b1 * b1 + b2 * b2;
+            const double c01 = a0 * b1 - a1 * b0;
+            const double c02 = a0 * b2 - a2 * b0;
+            const double c12 = a1 * b2 - a2 * b1;
+            const double square_cross = (a0 - b0) * (a0 - b0) + (a1 - b1) * (a1 - b1) +
+                                        (a2 - b2) * (a2 - b2) + c01 * c01 + c02 * c02 + c12 * c12;
+            const double sine = std::sqrt(square_cross / (square_a * square_b));
+            // The codes are so close that the series' next term is below 1e-12 of the angle.
+            degrees[i] = 2 * (sine + sine * sine * sine / 6) * (180 / std::numbers::pi);
         }
     }
-    // The codes are so close that the series' next term is below 1e-12 of the angle.
-    const double sine = std::sqrt(square_cross / (square_a * square_b));
-    return 2 * (sine + sine * sine * sine / 6) * (180 / std::numbers::pi);
-}
+
+    float decoded_[3][kLanes];
+};
 
 using Words = std::array<std::uint16_t, 3>;
 
-Words pack_quat48(const Digits& digits, std::uint32_t largest, bool left_handed) {
+Words quat48_of(const Digits& digits, std::uint32_t largest, bool left_handed) {
     const std::uint32_t flags[3] = {left_handed, largest & 1, largest >> 1};
     Words words{};
     for (int i = 0; i < 3; ++i) {
@@ -209,7 +167,7 @@ TangentFrame unpack_quat48(const Words& words) {
                            words[0] >> 15 != 0);
 }
 
-std::uint32_t pack_quat32(const Digits& digits, std::uint32_t largest, bool left_handed) {
+std::uint32_t quat32_of(const Digits& digits, std::uint32_t largest, bool left_handed) {
     std::uint32_t code = left_handed * 4u + largest;
     for (int i = 2; i >= 0; --i) code = code * kQuat32Base + digits[i];
     return code;
@@ -278,9 +236,8 @@ Words nearest_half_turn(const std::array<double, 3>& v) {
     return best;
 }
 
-Words pack_half3(const Rotation& rotation, bool left_handed) {
+Words pack_half3(const Quaternion& q, bool left_handed) {
     constexpr double kExact = 1e-6;  // what the rounding of the input's floats may amount to
-    const auto& q = rotation.q;
     const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     const std::array<double, 3> v{std::abs(q[0]) / norm, std::abs(q[1]) / norm,
                                   std::abs(q[2]) / norm};
@@ -326,11 +283,11 @@ using Components = std::array<std::uint32_t, 4>;
 constexpr std::uint32_t kSignBit = 0x8000'0000;
 constexpr std::uint32_t kOneBits = std::bit_cast<std::uint32_t>(1.0f);
 
-Components pack_f32(const Rotation& rotation, bool left_handed) {
-    const double sign = rotation.q[3] < 0 ? -1 : 1;
+Components pack_f32(const Quaternion& q, bool left_handed) {
+    const double sign = q[3] < 0 ? -1 : 1;
     Components bits{};
     for (int i = 0; i < 4; ++i) {
-        bits[i] = std::bit_cast<std::uint32_t>(static_cast<float>(rotation.q[i] * sign));
+        bits[i] = std::bit_cast<std::uint32_t>(static_cast<float>(q[i] * sign));
     }
     bits[3] = (bits[3] & ~kSignBit) | (left_handed ? kSignBit : 0);
     return bits;
@@ -360,32 +317,57 @@ void write(const T& value, std::byte* out) {
     std::memcpy(out, &value, sizeof value);
 }
 
+/// quat48 or quat32 of kLanes frames.
+template <std::size_t kLanes>
+void pack_digits(FrameForm form, std::span<const TangentFrame> frames, std::byte* out,
+                 std::size_t stride, double* degrees) {
+    const bool wide = form == FrameForm::quat48;
+    DigitLanes<kLanes> lanes;
+    for (std::size_t i = 0; i < kLanes; ++i) lanes.rotations.load(i, frames[i]);
+    lanes.compute((wide ? kQuat48DigitMax : kQuat32Base) / 2,
+                  wide ? kQuat48InverseHalf : kQuat32InverseHalf);
+    for (std::size_t i = 0; i < kLanes; ++i, out += stride) {
+        const auto largest = static_cast<std::uint32_t>(lanes.rotations.largest[i]);
+        const bool left_handed = frames[i].handedness < 0;
+        if (wide) {
+            write(quat48_of(lanes.of(i), largest, left_handed), out);
+        } else {
+            write(quat32_of(lanes.of(i), largest, left_handed), out);
+        }
+        degrees[i] = lanes.degrees[i];
+    }
+}
+
 }  // namespace
 
 double pack_frame(FrameForm form, const TangentFrame& frame, std::byte* out) {
-    const Rotation rotation = rotation_of(frame);
-    const bool left_handed = frame.handedness < 0;
-    switch (form) {
-        case FrameForm::quat48: {
-            const Digits digits = digits_of(rotation, kQuat48DigitMax / 2);
-            write(pack_quat48(digits, rotation.largest, left_handed), out);
-            return angle_to(rotation, digits, kQuat48DigitMax / 2, kQuat48InverseHalf);
-        }
-        case FrameForm::quat32: {
-            const Digits digits = digits_of(rotation, kQuat32Base / 2);
-            write(pack_quat32(digits, rotation.largest, left_handed), out);
-            return angle_to(rotation, digits, kQuat32Base / 2, kQuat32InverseHalf);
-        }
-        case FrameForm::half3: {
-            const Words words = pack_half3(rotation, left_handed);
-            write(words, out);
-            return frame_angle(unpack_f32(pack_f32(rotation, left_handed)), unpack_half3(words));
-        }
-        case FrameForm::f32:
-            break;
+    double degrees = 0;
+    if (form == FrameForm::quat48 || form == FrameForm::quat32) {
+        pack_digits<1>(form, {&frame, 1}, out, 0, &degrees);
+        return degrees;
     }
-    write(pack_f32(rotation, left_handed), out);
-    return 0;
+    const bool left_handed = frame.handedness < 0;
+    const Quaternion q = quaternion_of(frame);
+    const Components exact = pack_f32(q, left_handed);
+    if (form == FrameForm::f32) {
+        write(exact, out);
+        return 0;
+    }
+    const Words words = pack_half3(q, left_handed);
+    write(words, out);
+    return frame_angle(unpack_f32(exact), unpack_half3(words));
+}
+
+void pack_frames(FrameForm form, std::span<const TangentFrame> frames, std::byte* out,
+                 std::size_t stride, double* degrees) {
+    std::size_t i = 0;
+    if (form == FrameForm::quat48 || form == FrameForm::quat32) {
+        constexpr std::size_t kLanes = 16;
+        for (; i + kLanes <= frames.size(); i += kLanes)
+            pack_digits<kLanes>(form, frames.subspan(i, kLanes), out + i * stride, stride,
+                                degrees + i);
+    }
+    for (; i < frames.size(); ++i) degrees[i] = pack_frame(form, frames[i], out + i * stride);
 }
 
 TangentFrame unpack_frame(FrameForm form, const std::byte* in) {
