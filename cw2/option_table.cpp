@@ -197,7 +197,7 @@ std::vector<Setting> all_settings() {
     using O = Options;
     return {
         value("scene", "SCENE.cw2mesh", "file baked by cw2-bake", &O::scene),
-        value("output", "FILE.png|FILE.exr", "write one picture and end", &O::output),
+        value("output", "FILE.png|FILE.exr", "write a picture and end", &O::output),
         value("size", "WIDTHxHEIGHT", "pixels [1280x720]", &O::size),
         view_setting(),
         value("split", "LEFT,RIGHT",
