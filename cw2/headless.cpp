@@ -105,19 +105,6 @@ std::string stats_of(const Device& device, const Scene& scene, const Timings& ti
         timings.save, timings.frames.size(), median(timings.frames), median(timings.gpu_frames));
 }
 
-/// Puts the legend of its false colours onto a PNG's pixels.
-void draw_legends(std::span<std::byte> pixels, const PictureSize& size,
-                  const FrameSettings& settings) {
-    if (!settings.false_color) return;
-    const std::uint32_t end = settings.split ? settings.split->column(size.width) : size.width;
-    const auto draw = [&](View view, std::uint32_t left, std::uint32_t right) {
-        draw_legend(pixels, size.width, size.height, left, right,
-                    settings.false_color->range_of(view));
-    };
-    draw(settings.view, 0, end);
-    if (settings.split) draw(settings.split->right.view, end, size.width);
-}
-
 /// Saves pictures on a thread of its own, while the next one is drawn.
 class Saver {
  public:
@@ -129,7 +116,7 @@ class Saver {
         finish();
         pixels_.assign(pixels.begin(), pixels.end());
         pending_ = std::async(std::launch::async, [this, settings, path = std::move(path)] {
-            draw_legends(pixels_, size_, settings);
+            draw_legends(pixels_, size_.width, size_.height, settings);
             write_image(path, size_.width, size_.height, pixels_);
         });
     }

@@ -73,8 +73,9 @@ class Title {
     void set_error(std::string error) { error_ = std::move(error); }
 
     /// What is new shows at once, but the time every now and then only.
-    void update(View view, std::optional<double> milliseconds) {
-        std::string words = fmt::format("{} - {}", scene_, kViewNames[view]);
+    void update(const FrameSettings& settings, std::optional<double> milliseconds) {
+        std::string words = fmt::format("{} - {}", scene_, kViewNames[settings.view]);
+        if (settings.split) words += fmt::format(" | {}", kViewNames[settings.split->right.view]);
         if (!error_.empty()) words = error_ + " - " + words;
         if (words == words_ && seconds_since(written_) < kTitleSeconds) return;
         window_.set_title(milliseconds ? fmt::format("{} - {:.1f} ms", words, *milliseconds)
@@ -130,6 +131,8 @@ class Session {
         last_step_ = now;
         stale_ |= state_.apply(input, seconds, aspect_of(extent_)) || extent_changed;
         unshown_ |= input.exposed;
+        // The panel shows what a frame takes without waiting for pipelines.
+        stale_ |= panel_shown_ && presenter_.times_are_cold();
         // A CPU has better things to do than to draw the same again.
         const bool drawn = (stale_ || unshown_ || panel_shown_ || draws_always_) && draw();
         if (drawn) {
@@ -142,7 +145,7 @@ class Session {
         unsettled_ = input.anything ? kFramesToSettle : std::max(unsettled_ - 1, 0);
         idle_ = !drawn || (panel_shown_ && !draws_always_ && !state_.light_moves() &&
                            input.direction == glm::vec3(0.0f) && unsettled_ == 0);
-        title_.update(state_.settings().view, presenter_.times().gpu);
+        title_.update(state_.settings(), presenter_.times().gpu);
     }
 
     /// Shows the panel, lets it change the state, and takes out of `input` what was for it.
@@ -166,7 +169,7 @@ class Session {
              .extent = extent_,
              .times = presenter_.times(),
              .counts = presenter_.counts(),
-             .triangles = scene_->triangle_count(),
+             .triangles = scene_->triangle_count() * (state_.options().split ? 2 : 1),
              .scene_bytes = scene_->memory_bytes(),
              .image_bytes = presenter_.memory_bytes(),
              .pick = pick_,

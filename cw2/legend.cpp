@@ -140,12 +140,13 @@ glm::u8vec3 false_color_bytes(float position) {
     return bytes;
 }
 
-void draw_legend(std::span<std::byte> pixels, std::uint32_t width, std::uint32_t height,
-                 std::uint32_t left, std::uint32_t right, const ValueRange& range) {
+std::optional<PixelArea> draw_legend(std::span<std::byte> pixels, std::uint32_t width,
+                                     std::uint32_t height, std::uint32_t left, std::uint32_t right,
+                                     const ValueRange& range) {
     const std::int64_t scale = std::max<std::int64_t>(1, height / 180);
     const std::int64_t bar = std::min(kLongest, (right - left) / scale - 2 * kSide);
     const std::int64_t top = std::int64_t{height} - kHeight * scale;
-    if (bar < kShortest || top < 0) return;
+    if (bar < kShortest || top < 0) return std::nullopt;
     Canvas canvas(pixels, width, left, top, scale);
     canvas.fill(0, 0, bar + 2 * kSide, kHeight, kPaper);
     canvas.fill_with_scale(kSide, kMargin, bar, kBar);
@@ -165,6 +166,24 @@ void draw_legend(std::span<std::byte> pixels, std::uint32_t width, std::uint32_t
         canvas.write(begin, kMargin + kBar + kMark + 1, tick.label);
         taken.emplace_back(begin, begin + length);
     }
+    return PixelArea{left, static_cast<std::uint32_t>(top),
+                     static_cast<std::uint32_t>((bar + 2 * kSide) * scale),
+                     static_cast<std::uint32_t>(kHeight * scale)};
+}
+
+std::vector<PixelArea> draw_legends(std::span<std::byte> pixels, std::uint32_t width,
+                                    std::uint32_t height, const FrameSettings& settings) {
+    std::vector<PixelArea> areas;
+    if (!settings.false_color) return areas;
+    const std::uint32_t end = settings.split ? settings.split->column(width) : width;
+    const auto draw = [&](View view, std::uint32_t left, std::uint32_t right) {
+        const auto area =
+            draw_legend(pixels, width, height, left, right, settings.false_color->range_of(view));
+        if (area) areas.push_back(*area);
+    };
+    draw(settings.view, 0, end);
+    if (settings.split) draw(settings.split->right.view, end, width);
+    return areas;
 }
 
 }  // namespace cw2

@@ -9,7 +9,9 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "cw2/legend.h"
 #include "cw2/view.h"
+#include "shaders/false_color.h"
 
 namespace cw2 {
 
@@ -83,20 +85,55 @@ void color(const char* name, const char* id, glm::vec3& value) {
     }
 }
 
+void view_combo(const char* id, View& shown) {
+    if (!ImGui::BeginCombo(id, kViewNames[shown].data(), ImGuiComboFlags_HeightLargest)) return;
+    for (View view = 0; view < kViewNames.size(); ++view) {
+        if (ImGui::Selectable(kViewNames[view].data(), view == shown)) shown = view;
+        ImGui::SameLine(9.0f * ImGui::GetFontSize());
+        ImGui::TextDisabled("%s", kViewDescriptions[view].data());
+    }
+    ImGui::EndCombo();
+}
+
+void side_row(const char* name, Side& side) {
+    ImGui::PushID(name);
+    label(name);
+    view_combo("##view", side.view);
+    label("");
+    ImGui::Checkbox("normal maps", &side.normal_map);
+    ImGui::SameLine();
+    ImGui::Checkbox("masks", &side.alpha_mask);
+    ImGui::PopID();
+}
+
+void split_rows(Options& options) {
+    label("split");
+    bool split = options.split.has_value();
+    if (ImGui::Checkbox("##split", &split)) {
+        if (split) {
+            // Before and after normal mapping, until something else is chosen.
+            options.split = {Side{options.view, false}, Side{options.view}};
+        } else {
+            options.view = options.split->front().view;
+            options.split.reset();
+        }
+    }
+    if (!options.split) return;
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0f);
+    ImGui::SliderFloat("##divider", &options.divider, 0.0f, 1.0f, "divider at %.3f", kClamp);
+    side_row("left", options.split->front());
+    side_row("right", options.split->back());
+}
+
 void view_section(Options& options) {
     if (!section("View")) return;
-    label("shows");
-    if (ImGui::BeginCombo("##view", kViewNames[options.view].data(), ImGuiComboFlags_HeightLarge)) {
-        for (View view = 0; view < kViewNames.size(); ++view) {
-            if (ImGui::Selectable(kViewNames[view].data(), view == options.view)) {
-                options.view = view;
-            }
-            ImGui::SameLine(ImGui::GetFontSize() * 9.0f);
-            ImGui::TextDisabled("%s", kViewDescriptions[view].data());
-        }
-        ImGui::EndCombo();
+    if (!options.split) {
+        label("shows");
+        view_combo("##view", options.view);
+        dim_text(std::string(kViewDescriptions[options.view]));
     }
-    dim_text(std::string(kViewDescriptions[options.view]));
+    split_rows(options);
     label("samples");
     for (const std::uint32_t samples : {1u, 4u}) {
         if (ImGui::RadioButton(samples == 1 ? "1 a pixel" : "4", options.samples == samples)) {
@@ -106,6 +143,71 @@ void view_section(Options& options) {
     }
     ImGui::NewLine();
     color("background", "##background", options.background);
+}
+
+/// The colours of a range, and what they mean.
+void scale_bar(const ValueRange& range) {
+    constexpr int kSteps = 64;
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    const float height = 0.7f * ImGui::GetFontSize();
+    const auto edge = [&](int step) { return at.x + width * static_cast<float>(step) / kSteps; };
+    for (int i = 0; i < kSteps; ++i) {
+        const glm::vec3 rgb = interop::false_color((static_cast<float>(i) + 0.5f) / kSteps);
+        const ImU32 ink = ImGui::ColorConvertFloat4ToU32({rgb.r, rgb.g, rgb.b, 1.0f});
+        list->AddRectFilled({edge(i), at.y}, {edge(i + 1), at.y + height}, ink);
+    }
+    std::vector<Tick> ticks = ticks_of(range);
+    std::sort(ticks.begin(), ticks.end(),
+              [](const Tick& a, const Tick& b) { return a.position < b.position; });
+    float end = at.x;
+    for (const Tick& tick : ticks) {
+        const float size = ImGui::CalcTextSize(tick.label.c_str()).x;
+        const float left = at.x + std::clamp(width * tick.position - 0.5f * size, 0.0f,
+                                             std::max(width - size, 0.0f));
+        // What would touch the label before is left out.
+        if (left < end) continue;
+        list->AddText({left, at.y + height}, ImGui::GetColorU32(ImGuiCol_Text), tick.label.c_str());
+        end = left + size + 0.5f * ImGui::GetFontSize();
+    }
+    ImGui::Dummy({width, height + ImGui::GetTextLineHeight()});
+}
+
+void false_color_rows(Options& options) {
+    label("false colours");
+    bool on = options.false_color.has_value();
+    if (ImGui::Checkbox("##false_color", &on)) {
+        options.false_color = on ? std::optional(FalseColor{}) : std::nullopt;
+    }
+    if (!options.false_color) return;
+    const View view = options.split ? options.split->front().view : options.view;
+    std::optional<ValueRange>& range = options.false_color->range;
+    ImGui::SameLine();
+    bool own = !range;
+    if (ImGui::Checkbox("range of the view", &own)) {
+        range = own ? std::nullopt : std::optional(kViewRanges[view]);
+    }
+    const ValueRange shown = options.false_color->range_of(view);
+    if (range) {
+        label("from, to");
+        float ends[2] = {range->low, range->high};
+        const bool edited = ImGui::DragFloat2("##range", ends, 0.01f * (shown.high - shown.low),
+                                              -kLargest, kLargest, "%.4g", kClamp);
+        if (edited && ends[0] < ends[1]) range = ValueRange{ends[0], ends[1]};
+    }
+    scale_bar(shown);
+}
+
+void value_section(Options& options) {
+    if (!section("Values as colours")) return;
+    label("exposure");
+    if (options.false_color) {
+        ImGui::TextDisabled("none with false colours");
+    } else {
+        ImGui::SliderFloat("##exposure", &options.exposure, -10.0f, 10.0f, "%+.1f stops", kClamp);
+    }
+    false_color_rows(options);
 }
 
 void light_section(PanelState& state, const Bounds& bounds) {
@@ -236,10 +338,10 @@ void pick_section(const PanelFacts& facts) {
     const Pick& pick = *facts.pick;
     const auto number = [](float value) { return fmt::format("{:.4g}", value); };
     const auto vector = [](const glm::vec3& v) {
-        return fmt::format("{:<7.4g} {:<7.4g} {:.4g}", v.x, v.y, v.z);
+        return fmt::format("{:<8.3g} {:<8.3g} {:.3g}", v.x, v.y, v.z);
     };
     const auto direction = [](const glm::vec3& v) {
-        return fmt::format("{:<7.4f} {:<7.4f} {:.4f}", v.x, v.y, v.z);
+        return fmt::format("{:<8.4f} {:<8.4f} {:.4f}", v.x, v.y, v.z);
     };
     reading("pixel", fmt::format("{}, {}", pick.pixel.x, pick.pixel.y));
     reading("material", facts.picked_material);
@@ -290,15 +392,16 @@ void begin_window(const char* name, float left, float width, float scale) {
 std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state) {
     std::vector<Command> commands;
     const float margin = 8.0f * facts.scale;
-    const float reading_width = 272.0f * facts.scale;
+    const float reading_width = 294.0f * facts.scale;
     begin_window("Readings", ImGui::GetIO().DisplaySize.x - reading_width - margin, reading_width,
                  facts.scale);
     frame_section(facts);
     pick_section(facts);
     ImGui::End();
 
-    begin_window("cw2", margin, 336.0f * facts.scale, facts.scale);
+    begin_window("cw2", margin, 344.0f * facts.scale, facts.scale);
     view_section(state.options);
+    value_section(state.options);
     light_section(state, facts.bounds);
     camera_section(state.options, commands);
     material_section(state.options);

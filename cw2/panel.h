@@ -22,7 +22,7 @@ struct PanelFacts {
     VkExtent2D extent;  ///< of the picture, pixels
     FrameTimes times;
     FrameCounts counts;
-    std::uint64_t triangles;    ///< of the whole scene
+    std::uint64_t triangles;    ///< of the whole scene, on each side of a split
     std::uint64_t scene_bytes;  ///< device memory of geometry and textures
     std::uint64_t image_bytes;  ///< device memory of what is drawn into
     std::optional<Pick> pick;   ///< of the pixel that was clicked

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <utility>
 
+#include "cw2/legend.h"
+
 namespace cw2 {
 
 namespace {
@@ -84,7 +86,8 @@ void Presenter::fit_picture() {
     picture_ = make_image(
         device_, {.format = swapchain_.format(),
                   .extent = extent,
-                  .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+                  .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                           VK_IMAGE_USAGE_TRANSFER_DST_BIT});
     picture_extent_ = extent;
     has_picture_ = false;
 }
@@ -125,6 +128,7 @@ void Presenter::record(std::uint32_t slot, std::uint32_t image, const WindowCont
                           .available_at = kCopiedFrom.stages,
                           .after = kCopiedFrom},
                          contents.settings);
+        record_legends(slots_[slot], contents.settings);
         slots_[slot].builds_pipelines = renderer_.counts().new_pipelines;
         has_picture_ = true;
     }
@@ -133,6 +137,39 @@ void Presenter::record(std::uint32_t slot, std::uint32_t image, const WindowCont
     }
     record_window(slot, image, contents.panel, what == Read::window ? pixels : nullptr);
     check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+}
+
+void Presenter::record_legends(Slot& slot, const FrameSettings& settings) {
+    if (!settings.false_color) return;
+    const auto [width, height] = picture_extent_;
+    const VkDeviceSize bytes = VkDeviceSize{width} * height * 4;
+    if (slot.legends.mapped.size() != bytes) {
+        slot.legends =
+            make_buffer(device_, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::upload);
+    }
+    const std::span<std::byte> pixels = slot.legends.mapped;
+    std::vector<VkBufferImageCopy> copies;
+    for (const PixelArea& area : draw_legends(pixels, width, height, settings)) {
+        const std::size_t first = (std::size_t{area.top} * width + area.left) * 4;
+        if (swapchain_.format() == VK_FORMAT_B8G8R8A8_SRGB) {
+            for (std::size_t row = 0; row < area.height; ++row) {
+                swap_red_and_blue(
+                    pixels.subspan(first + row * width * 4, std::size_t{area.width} * 4));
+            }
+        }
+        copies.push_back({.bufferOffset = first,
+                          .bufferRowLength = width,
+                          .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                          .imageOffset = {static_cast<std::int32_t>(area.left),
+                                          static_cast<std::int32_t>(area.top), 0},
+                          .imageExtent = {area.width, area.height, 1}});
+    }
+    if (copies.empty()) return;
+    const VkImage picture = picture_.handle.get();
+    image_barrier(slot.commands, picture, VK_IMAGE_ASPECT_COLOR_BIT, kCopiedFrom, kCopiedTo);
+    vkCmdCopyBufferToImage(slot.commands, slot.legends.handle.get(), picture, kCopiedTo.layout,
+                           static_cast<std::uint32_t>(copies.size()), copies.data());
+    image_barrier(slot.commands, picture, VK_IMAGE_ASPECT_COLOR_BIT, kCopiedTo, kCopiedFrom);
 }
 
 void Presenter::record_window(std::uint32_t slot, std::uint32_t image, UiPass* panel,

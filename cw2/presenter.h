@@ -70,6 +70,8 @@ class Presenter {
     void use_samples(VkSampleCountFlagBits samples);
 
     const FrameTimes& times() const { return times_; }
+    /// Whether only frames were seen that had to wait for pipelines.
+    bool times_are_cold() const { return times_are_cold_; }
     /// Of the last picture.
     const FrameCounts& counts() const { return renderer_.counts(); }
     /// Device memory of the images that are drawn into.
@@ -81,6 +83,7 @@ class Presenter {
         Semaphore available;  ///< the image it copies to
         Fence drawn;
         bool in_flight = false;
+        Buffer legends;            ///< what is copied onto the picture
         bool draws_scene = false;  ///< its latest frame did
         bool builds_pipelines = false;
         double cpu = 0.0;  ///< milliseconds
@@ -93,6 +96,7 @@ class Presenter {
     void fit_picture();
     void record(std::uint32_t slot, std::uint32_t image, const WindowContents& contents, Read what,
                 const Buffer* pixels);
+    void record_legends(Slot& slot, const FrameSettings& settings);
     void record_window(std::uint32_t slot, std::uint32_t image, UiPass* panel,
                        const Buffer* pixels);
     void submit(const Slot& slot, std::uint32_t image) const;
@@ -111,7 +115,7 @@ class Presenter {
     VkExtent2D picture_extent_{};
     bool has_picture_ = false;
     FrameTimes times_;
-    bool times_are_cold_ = true;  ///< those of frames that had to wait for pipelines
+    bool times_are_cold_ = true;
 };
 
 }  // namespace cw2

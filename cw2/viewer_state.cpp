@@ -26,6 +26,11 @@ Options spelt_out(const Options& options, const Bounds& bounds, float aspect) {
     return result;
 }
 
+/// The view that keys change; the left one where there are two.
+View& shown_view(Options& options) {
+    return options.split ? options.split->front().view : options.view;
+}
+
 }  // namespace
 
 ViewerState::ViewerState(const Options& options, const Bounds& bounds, float aspect)
@@ -67,13 +72,14 @@ bool ViewerState::apply(const Command& command, float aspect) {
             light_moves_ = !light_moves_;
             return true;
         case CommandKind::show_view:
-            options_.view = command.view;
+            shown_view(options_) = command.view;
             return true;
         case CommandKind::next_view:
-            options_.view = (options_.view + 1) % interop::kViewCount;
+            shown_view(options_) = (shown_view(options_) + 1) % interop::kViewCount;
             return true;
         case CommandKind::previous_view:
-            options_.view = (options_.view + interop::kViewCount - 1) % interop::kViewCount;
+            shown_view(options_) =
+                (shown_view(options_) + interop::kViewCount - 1) % interop::kViewCount;
             return true;
         case CommandKind::toggle_normal_map:
             options_.normal_map = !options_.normal_map;

@@ -120,6 +120,7 @@ SurfaceHandle Window::make_surface(const Instance& instance) const {
 
 void Window::show() {
     glfwShowWindow(handle_);
+    glfwGetCursorPos(handle_, &cursor_.x, &cursor_.y);
 }
 
 void Window::set_title(const std::string& title) {
@@ -149,9 +150,7 @@ Input Window::poll(double seconds) {
         glfwPollEvents();
     }
     Input input = std::exchange(input_, {});
-    glm::dvec2 cursor;
-    glfwGetCursorPos(handle_, &cursor.x, &cursor.y);
-    input.cursor = in_pixels(cursor);
+    input.cursor = in_pixels(cursor_);
     const auto axis = [this](int positive, int negative) {
         // Both are asked, because asking is what lets go of a sticky key.
         const bool forth = held(positive);
@@ -215,19 +214,16 @@ void Window::on_button(GLFWwindow* handle, int button, int action, int) {
     Window& window = of(handle);
     window.input_.anything = true;
     if (button != GLFW_MOUSE_BUTTON_LEFT && button != GLFW_MOUSE_BUTTON_RIGHT) return;
-    glm::dvec2 cursor;
-    glfwGetCursorPos(handle, &cursor.x, &cursor.y);
     window.input_.mouse_actions.push_back(
         {.button = button == GLFW_MOUSE_BUTTON_LEFT ? MouseButton::left : MouseButton::right,
          .pressed = action == GLFW_PRESS,
-         .cursor = window.in_pixels(cursor)});
+         .cursor = window.in_pixels(window.cursor_)});
 }
 
 void Window::on_cursor(GLFWwindow* handle, double x, double y) {
     Window& window = of(handle);
     window.input_.anything = true;
-    if (!window.cursor_hidden_) return;
-    window.input_.drag += glm::vec2(glm::dvec2(x, y) - window.cursor_);
+    if (window.cursor_hidden_) window.input_.drag += glm::vec2(glm::dvec2(x, y) - window.cursor_);
     window.cursor_ = {x, y};
 }
 

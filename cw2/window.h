@@ -81,7 +81,7 @@ class Window {
     GLFWwindow* handle_ = nullptr;
     Input input_;  ///< collected by the callbacks
     bool cursor_hidden_ = false;
-    glm::dvec2 cursor_{0.0};  ///< screen units, while it is hidden
+    glm::dvec2 cursor_{0.0};  ///< screen units, as of the latest event
 };
 
 }  // namespace cw2

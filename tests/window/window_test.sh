@@ -170,6 +170,46 @@ check_shows_and_hides_the_panel() {
     close_window
 }
 
+check_drags_the_divider() {
+    open_window "$cw2" "$scene" "${options[@]}" --split normal,shaded --divider 0.25
+    wait_until title_has "stage.cw2mesh - normal | shaded"
+    take_picture
+    local start=$picture
+    # Beside it nothing is taken hold of.
+    xdotool mousemove --window "$window" 90 70 mousedown 1 mousemove_relative 60 0 mouseup 1
+    take_picture
+    expect_same "$start" "$picture"
+    xdotool mousemove --window "$window" 64 70 mousedown 1 mousemove_relative 40 10
+    wait_until picture_differs_from "$start"
+    xdotool mousemove --window "$window" 192 30 mouseup 1
+    xdotool mousemove_relative 20 0
+    picture_is_headless() {
+        take_picture
+        "$cw2" "$scene" --output "$work/dragged.png" "${options[@]}" --split normal,shaded \
+            --divider 0.75
+        ! different "$work/dragged.png" "$picture"
+    }
+    wait_until picture_is_headless
+    save_settings F2
+    grep -qx 'divider = 0.75' "$saved" || fail "the divider is not where it was let go"
+    close_window
+}
+
+check_shows_legends() {
+    open_window "$cw2" "$scene" --size 480x270 --samples 1 "${camera[@]}" --false-color auto \
+        --view distribution
+    take_picture
+    expect_headless --size 480x270 --samples 1 "${camera[@]}" --false-color auto --view distribution
+    local picture_of_file=$picture
+    take_window_picture
+    expect_same "$picture_of_file" "$picture"
+    close_window
+    open_window "$cw2" "$scene" "${options[@]}" --exposure 2.5
+    take_picture
+    expect_headless "${options[@]}" --exposure 2.5
+    close_window
+}
+
 # Presses a key; `saved` is then the path of the config file that was written.
 save_settings() {
     local count
