@@ -4,6 +4,6 @@
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 build=${1:-$here/../../build/release}
-sh "$here/install_mikktspace.sh" "$build/oracle"
+sh "$here/install_package.sh" "$build/oracle" mikktspace 1.1.1
 "$build/bin/tangents_oracle" record "$here/recorded_tangents.bin" "$build/oracle" "" "" \
     "$(command -v node)" "$here/mikktspace.mjs" "$build/oracle"

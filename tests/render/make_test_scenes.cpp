@@ -9,6 +9,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 
+#include "tests/render/gltf_scenes.h"
 #include "tests/render/known_textures.h"
 #include "tests/render/scene_writer.h"
 #include "tests/support/image.h"
@@ -169,6 +170,7 @@ int main(int argc, char** argv) {
         write_stage(folder, "stage_z_up", [](dvec3 p) { return dvec3(p.x, -p.z, p.y); });
         write_plates(folder);
         write_greys(folder);
+        write_gltf_scenes(folder);
         return 0;
     } catch (const std::exception& error) {
         fmt::print(stderr, "make_test_scenes: {}\n", error.what());
