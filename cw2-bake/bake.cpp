@@ -173,6 +173,8 @@ void write_stats(const Settings& settings, const BakeStats& stats) {
 }  // namespace
 
 std::string export_baked(const Settings& settings) {
+    if (!is_gltf(settings.output))
+        throw BakeError(settings.input.string() + ": is baked already; -o FILE.glb exports it");
     refuse_overwriting(settings, {settings.input});
     const mesh_format::MappedFile file(settings.input);
     const mesh_format::Document document =

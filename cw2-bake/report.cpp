@@ -151,6 +151,11 @@ void list_materials(const Document& document, std::string& out) {
                 fmt::format_to(std::back_inserter(out), ", {} texture {}", use, index);
             }
         };
+        if (material.normal_scale != 1.0f) {
+            fmt::format_to(std::back_inserter(out), ", normal scale {:.3g}", material.normal_scale);
+        }
+        if (material.flags & mesh_format::kCullBack) out += ", seen from the front";
+        if (material.flags & mesh_format::kFlipBackNormals) out += ", lit on both sides";
         texture("base colour", material.base_color_texture);
         texture("roughness", material.roughness_texture);
         texture("metalness", material.metalness_texture);
@@ -250,6 +255,16 @@ std::string inspection(const Document& document, std::uint64_t file_bytes) {
     fmt::format_to(std::back_inserter(out), "  box from {} {} {} to {} {} {}, radius {}\n",
                    scene.bounds_min[0], scene.bounds_min[1], scene.bounds_min[2],
                    scene.bounds_max[0], scene.bounds_max[1], scene.bounds_max[2], scene.radius);
+    if (scene.flags & mesh_format::kHasCamera) {
+        fmt::format_to(std::back_inserter(out), "  camera at {} {} {}, towards {} {} {}\n",
+                       scene.camera_position[0], scene.camera_position[1], scene.camera_position[2],
+                       scene.camera_target[0], scene.camera_target[1], scene.camera_target[2]);
+    }
+    if (scene.flags & mesh_format::kHasLight) {
+        fmt::format_to(std::back_inserter(out), "  light at {} {} {}, colour {} {} {}\n",
+                       scene.light_position[0], scene.light_position[1], scene.light_position[2],
+                       scene.light_color[0], scene.light_color[1], scene.light_color[2]);
+    }
     list_meshes(document, out);
     list_materials(document, out);
     list_textures(document, out);
@@ -272,12 +287,15 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
         json_array(document.materials, [&](const MaterialRecord& material) {
             return fmt::format(
                 "{{\"name\": {}, \"base_color\": [{}, {}, {}], \"roughness\": {}, "
-                "\"metalness\": {}, \"alpha_mask\": {}, \"base_color_texture\": {}, "
+                "\"metalness\": {}, \"normal_scale\": {}, \"culled\": {}, \"alpha_mask\": {}, "
+                "\"base_color_texture\": {}, "
                 "\"roughness_texture\": {}, \"metalness_texture\": {}, \"normal_texture\": {}, "
                 "\"alpha_mask_texture\": {}}}",
                 json_text(document.text(material.name)), material.base_color[0],
                 material.base_color[1], material.base_color[2], material.roughness,
-                material.metalness, (material.flags & mesh_format::kAlphaMask) != 0,
+                material.metalness, material.normal_scale,
+                (material.flags & mesh_format::kCullBack) != 0,
+                (material.flags & mesh_format::kAlphaMask) != 0,
                 json_texture(material.base_color_texture), json_texture(material.roughness_texture),
                 json_texture(material.metalness_texture), json_texture(material.normal_texture),
                 json_texture(material.alpha_mask_texture));

@@ -91,8 +91,6 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     }
     settings.is_baked = settings.input.extension() == ".cw2mesh";
     if (settings.inspect) return settings;
-    if (settings.is_baked && !is_gltf(settings.output))
-        throw UsageError("a .cw2mesh file is baked already; -o FILE.glb exports it");
     if (is_gltf(settings.output)) {
         if (settings.compress) throw UsageError("--compress is for .cw2mesh files");
         // A glTF holds floats and PNGs: they should be as good as the source.

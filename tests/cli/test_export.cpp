@@ -1,0 +1,178 @@
+// Bakes as glTF, and back.
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "mesh-format/file.h"
+#include "mesh-format/tangent_frame.h"
+#include "tests/cli/scene_folder.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace mesh_format;
+
+/// A corner of a triangle of a file in the forms f32.
+struct Corner {
+    std::array<float, 5> place;  ///< position and UV
+    TangentFrame frame;
+};
+using Triangle = std::array<Corner, 3>;
+
+std::vector<Triangle> triangles_of(const Document& document) {
+    std::vector<Triangle> triangles;
+    for (const MeshRecord& mesh : document.meshes) {
+        EXPECT_TRUE(mesh.position_form == PositionForm::f32 && mesh.uv_form == UvForm::f32);
+        const VertexLayout layout =
+            vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+        const auto corner = [&](std::uint32_t i) {
+            const std::byte* vertex = document.vertices.data() + mesh.vertex_offset +
+                                      document.indices[mesh.first_index + i] * layout.stride;
+            Corner result;
+            std::memcpy(result.place.data(), vertex, 12);
+            std::memcpy(result.place.data() + 3, vertex + layout.uv_offset, 8);
+            result.frame = unpack_frame(mesh.frame_form, vertex + layout.frame_offset);
+            return result;
+        };
+        for (std::uint32_t i = 0; i < mesh.index_count; i += 3) {
+            Triangle triangle{corner(i), corner(i + 1), corner(i + 2)};
+            std::ranges::rotate(triangle, std::ranges::min_element(triangle, {}, &Corner::place));
+            triangles.push_back(triangle);
+        }
+    }
+    std::ranges::sort(triangles, {}, [](const Triangle& t) {
+        return std::array{t[0].place, t[1].place, t[2].place};
+    });
+    return triangles;
+}
+
+class Export : public SceneFolder {
+ protected:
+    /// The baked file, which stays mapped until the next call.
+    Document open(const std::string& name) {
+        const MappedFile& file = files_.emplace_back(here(name));
+        return parse(file.bytes(), name);
+    }
+    std::vector<std::string> texts(const Document& document, const auto& records) {
+        std::vector<std::string> result;
+        for (const auto& record : records) result.emplace_back(document.text(record.name));
+        return result;
+    }
+
+ private:
+    std::vector<MappedFile> files_;
+};
+
+const std::vector<std::string> kExact{"--positions", "f32",      "--tangent-frame", "f32",
+                                      "--textures",  "lossless", "--quiet"};
+
+std::vector<std::string> exactly(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), kExact.begin(), kExact.end());
+    return arguments;
+}
+
+TEST_F(Export, ComesBackAsItWas) {
+    bake_well(exactly({"scene.obj", "-o", "first.cw2mesh"}));
+    bake_well({"first.cw2mesh", "-o", "scene.glb", "--quiet"});
+    bake_well(exactly({"scene.glb", "-o", "second.cw2mesh"}));
+    const Document first = open("first.cw2mesh");
+    const Document second = open("second.cw2mesh");
+
+    const std::vector<Triangle> before = triangles_of(first);
+    const std::vector<Triangle> after = triangles_of(second);
+    ASSERT_EQ(before.size(), 6u);
+    ASSERT_EQ(before.size(), after.size());
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_EQ(before[i][k].place, after[i][k].place);
+            EXPECT_LT(frame_angle(before[i][k].frame, after[i][k].frame), 1e-4);
+        }
+    }
+    std::uint64_t vertices[2] = {};
+    for (const MeshRecord& mesh : first.meshes) vertices[0] += mesh.vertex_count;
+    for (const MeshRecord& mesh : second.meshes) vertices[1] += mesh.vertex_count;
+    EXPECT_EQ(vertices[0], vertices[1]);
+
+    EXPECT_EQ(texts(first, first.materials), texts(second, second.materials));
+    ASSERT_EQ(first.materials.size(), second.materials.size());
+    const auto texels = [](const Document& document, std::uint32_t texture) {
+        const auto bytes = texture == kNoTexture ? std::span<const std::byte>()
+                                                 : document.payload(document.textures[texture]);
+        return std::vector<std::byte>(bytes.begin(), bytes.end());
+    };
+    for (std::size_t i = 0; i < first.materials.size(); ++i) {
+        const MaterialRecord& a = first.materials[i];
+        const MaterialRecord& b = second.materials[i];
+        EXPECT_TRUE(std::ranges::equal(a.base_color, b.base_color));
+        EXPECT_EQ(a.roughness, b.roughness);
+        EXPECT_EQ(a.metalness, b.metalness);
+        EXPECT_EQ(a.alpha_cutoff, b.alpha_cutoff);
+        EXPECT_EQ(a.normal_scale, b.normal_scale);
+        EXPECT_EQ(a.flags, b.flags);
+        EXPECT_EQ(texels(first, a.base_color_texture), texels(second, b.base_color_texture));
+        EXPECT_EQ(texels(first, a.roughness_texture), texels(second, b.roughness_texture));
+        EXPECT_EQ(texels(first, a.normal_texture), texels(second, b.normal_texture));
+        EXPECT_EQ(texels(first, a.alpha_mask_texture), texels(second, b.alpha_mask_texture));
+    }
+}
+
+TEST_F(Export, AnySourceAndBothFormsOfGltfHoldTheSame) {
+    bake_well(exactly({"scene.obj", "-o", "baked.cw2mesh"}));
+    bake_well({"baked.cw2mesh", "-o", "scene.glb", "--quiet"});
+    const std::string of_baked = read("scene.glb");
+    bake_well({"scene.obj", "-o", "scene.glb", "--quiet"});
+    EXPECT_TRUE(read("scene.glb") == of_baked);
+
+    bake_well({"scene.obj", "-o", "scene.gltf", "--quiet"});
+    bake_well(exactly({"scene.gltf", "-o", "of_text.cw2mesh"}));
+    bake_well(exactly({"scene.glb", "-o", "of_binary.cw2mesh"}));
+    EXPECT_TRUE(read("of_text.cw2mesh") == read("of_binary.cw2mesh"));
+}
+
+TEST_F(Export, KeepsTheCameraAndTheLight) {
+    bake_well({"scene.obj", "-o", "scene.gltf", "--quiet", "--textures", "none"});
+    nlohmann::json gltf = nlohmann::json::parse(read("scene.gltf"));
+    gltf["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    gltf["extensionsUsed"] = {"KHR_lights_punctual"};
+    gltf["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "point"}, {"color", {1, 0.5, 0.25}}, {"intensity", 40}}};
+    gltf["nodes"].push_back({{"camera", 0}, {"translation", {1, 2, 8}}});
+    gltf["nodes"].push_back(
+        {{"translation", {3, 4, 5}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    gltf["scenes"][0]["nodes"] = {0, 1, 2};
+    write("seen.gltf", gltf.dump());
+    bake_well(exactly({"seen.gltf", "-o", "first.cw2mesh"}));
+    bake_well({"first.cw2mesh", "-o", "again.glb", "--quiet"});
+    bake_well(exactly({"again.glb", "-o", "second.cw2mesh"}));
+    const SceneRecord a = open("first.cw2mesh").scene;
+    const SceneRecord b = open("second.cw2mesh").scene;
+    EXPECT_EQ(a.flags, std::uint32_t{kHasCamera | kHasLight});
+    EXPECT_EQ(a.flags, b.flags);
+    EXPECT_EQ(a.camera_fov, 0.5f);
+    EXPECT_EQ(a.camera_fov, b.camera_fov);
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(a.camera_position[axis], b.camera_position[axis]);
+        EXPECT_NEAR(a.camera_target[axis], b.camera_target[axis], 1e-5);
+        EXPECT_EQ(a.light_position[axis], b.light_position[axis]);
+        EXPECT_NEAR(a.light_color[axis], b.light_color[axis], 1e-5);
+    }
+}
+
+TEST_F(Export, RefusalsNameTheFileAndLeaveNoOther) {
+    bake_well({"scene.obj", "-o", "small.cw2mesh", "--compress", "--quiet"});
+    write("cut.cw2mesh", read("small.cw2mesh").substr(0, 500));
+    write("out.glb", "what was there");
+    for (const char* input : {"cut.cw2mesh", "missing.cw2mesh"}) {
+        const Outcome outcome = bake({input, "-o", "out.glb"});
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_TRUE(outcome.err.starts_with(std::string("cw2-bake: ") + input + ": "))
+            << outcome.err;
+    }
+    EXPECT_EQ(read("out.glb"), "what was there");
+    EXPECT_EQ(bake({"scene.obj", "-o", "out.glb", "--compress"}).status, 2);
+}
+
+}  // namespace

@@ -1,0 +1,89 @@
+// What a bake reads: --depfile, and outputs that are refused because they are inputs.
+#include <algorithm>
+
+#include "tests/cli/scene_folder.h"
+#include "tests/support/gltf_writer.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Inputs : public SceneFolder {
+ protected:
+    /// What GNU make would bake anew because it is older than its inputs; empty for nothing.
+    std::string stale() {
+        write("Makefile", "include deps.mk\n%.cw2mesh:\n\t@echo stale\n");
+        const Outcome outcome = run({GNU_MAKE, "-s"}, {{}, folder_.path()});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return outcome.out.starts_with("stale") ? "stale" : "";
+    }
+    void make_older(const std::string& name) const {
+        fs::last_write_time(here(name), fs::last_write_time(here(name)) - std::chrono::hours(1));
+    }
+    void make_newer(const std::string& name) const {
+        fs::last_write_time(here(name), fs::last_write_time(here(name)) + std::chrono::hours(1));
+    }
+};
+
+TEST_F(Inputs, MakeBakesAnewWhenAnyFileThatWasReadChanges) {
+    bake_well({"scene.obj", "-o", "out.cw2mesh", "--quiet", "--depfile", "deps.mk"});
+    EXPECT_EQ(stale(), "");
+    for (const char* name :
+         {"scene.obj", "scene.mtl", "colors.png", "rough 1.png", "normals.png", "mask.png"}) {
+        make_newer(name);
+        EXPECT_EQ(stale(), "stale") << name;
+        make_older(name);
+    }
+    EXPECT_EQ(stale(), "");
+}
+
+TEST_F(Inputs, NamesAreEscapedForMake) {
+    const std::string odd = "a #$b  c$(x).png";
+    fs::rename(here("colors.png"), here(odd));
+    write("scene.mtl", "newmtl stone\nmap_Kd " + odd + "\nnewmtl leaf\nnewmtl plain\n");
+    bake_well({"scene.obj", "-o", "o u t.cw2mesh", "--quiet", "--depfile", "deps.mk"});
+    EXPECT_EQ(stale(), "");
+    make_newer(odd);
+    EXPECT_EQ(stale(), "stale");
+}
+
+TEST_F(Inputs, TheBufferAndTheImagesOfAGltfAreInputs) {
+    GltfWriter gltf = square_gltf();
+    gltf.root["images"] = {{{"uri", "rough%201.png"}}};
+    gltf.root["textures"] = {{{"source", 0}}};
+    gltf.root["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    gltf.root["meshes"][0]["primitives"][0]["material"] = 0;
+    gltf.write_gltf(here("square.gltf"));
+    bake_well({"square.gltf", "-o", "out.cw2mesh", "--quiet", "--depfile", "deps.mk"});
+    EXPECT_EQ(read("deps.mk"),
+              "out.cw2mesh: \\\n  square.gltf \\\n  square.bin \\\n  rough\\ 1.png\n");
+    const Outcome outcome = bake({"square.gltf", "-o", "square.bin"});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.err, "cw2-bake: square.bin: is an input; the output must be another file\n");
+}
+
+TEST_F(Inputs, AnOutputThatIsAnInputIsRefused) {
+    fs::create_symlink("scene.mtl", here("link"));
+    const auto refused = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> arguments{"scene.obj", "--quiet"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const std::string obj = read("scene.obj"), mtl = read("scene.mtl"), png = read("mask.png");
+        const Outcome outcome = bake(arguments);
+        EXPECT_TRUE(obj == read("scene.obj") && mtl == read("scene.mtl") &&
+                    png == read("mask.png"));
+        EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1);
+        return outcome.status == 1 && outcome.err.find("is an input") != std::string::npos;
+    };
+    EXPECT_TRUE(refused({"-o", "scene.obj"}));
+    EXPECT_TRUE(refused({"-o", "./scene.mtl"}));
+    EXPECT_TRUE(refused({"-o", "link"}));
+    EXPECT_TRUE(refused({"-o", "mask.png"}));
+    EXPECT_TRUE(refused({"-o", "out.cw2mesh", "--stats", "scene.mtl"}));
+    EXPECT_TRUE(refused({"-o", "out.cw2mesh", "--depfile", "mask.png"}));
+    EXPECT_FALSE(fs::exists(here("out.cw2mesh")));
+    const Outcome twice = bake({"scene.obj", "-o", "out.cw2mesh", "--stats", "out.cw2mesh"});
+    EXPECT_EQ(twice.status, 1);
+    EXPECT_EQ(twice.err, "cw2-bake: out.cw2mesh: is named for two outputs\n");
+}
+
+}  // namespace
