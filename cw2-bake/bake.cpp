@@ -209,6 +209,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
     weld(scene);
     clock.end("weld");
     const FramedTriangles framed = add_tangents(scene);
+    std::vector<Corner>().swap(scene.corners);  // now in the framed triangles
     clock.end("tangents");
     const FramedScene framed_scene{scene, framed};
     const std::vector<ChunkedMesh> meshes = make_chunks(framed_scene, budgets);

@@ -197,7 +197,8 @@ struct TrianglesByMaterial {
     std::vector<CentredTriangle> triangles;
 };
 
-TrianglesByMaterial sort_by_material(const SourceScene& scene) {
+TrianglesByMaterial sort_by_material(const FramedScene& framed) {
+    const SourceScene& scene = framed.source;
     TrianglesByMaterial result;
     result.first.assign(scene.materials.size() + 1, 0);
     for (const std::uint32_t material : scene.triangle_material) ++result.first[material + 1];
@@ -210,12 +211,12 @@ TrianglesByMaterial sort_by_material(const SourceScene& scene) {
                       [&](const auto& block) {
                           for (std::size_t i = block.begin(); i < block.end(); ++i) {
                               CentredTriangle& triangle = result.triangles[i];
-                              const Corner* corners =
-                                  &scene.corners[3 * std::size_t{triangle.index}];
+                              const std::uint32_t* corners =
+                                  &framed.framed.indices[3 * std::size_t{triangle.index}];
                               // Scaled so that no sum of finite positions overflows.
-                              triangle.centroid = 0.25f * scene.positions[corners[0].position] +
-                                                  0.25f * scene.positions[corners[1].position] +
-                                                  0.25f * scene.positions[corners[2].position];
+                              triangle.centroid = 0.25f * framed.position(corners[0]) +
+                                                  0.25f * framed.position(corners[1]) +
+                                                  0.25f * framed.position(corners[2]);
                           }
                       });
     return result;
@@ -224,7 +225,7 @@ TrianglesByMaterial sort_by_material(const SourceScene& scene) {
 }  // namespace
 
 std::vector<ChunkedMesh> make_chunks(const FramedScene& scene, std::span<const UvBudget> budgets) {
-    TrianglesByMaterial sorted = sort_by_material(scene.source);
+    TrianglesByMaterial sorted = sort_by_material(scene);
     tbb::enumerable_thread_specific<ChunkMaker> makers([&] { return ChunkMaker(scene); });
     tbb::enumerable_thread_specific<std::vector<std::uint32_t>> placed(scene.framed.vertices.size(),
                                                                        kNone);

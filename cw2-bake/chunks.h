@@ -24,7 +24,7 @@ struct UvBudget {
 
 /// A scene's triangles over framed vertices.
 struct FramedScene {
-    const SourceScene& source;  ///< welded
+    const SourceScene& source;  ///< its attributes and materials; its corners may be gone
     const FramedTriangles& framed;
 
     const glm::vec3& position(std::uint32_t vertex) const {

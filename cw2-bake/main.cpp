@@ -1,4 +1,6 @@
 // cw2-bake: turns an OBJ into a .cw2mesh file, and tells what is in one.
+#include <malloc.h>
+
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -30,9 +32,19 @@ void run(const bake::Settings& settings) {
     if (!settings.quiet) std::fputs(summary.c_str(), stdout);
 }
 
+/// One heap that keeps what it has got: a bake makes large arrays one after the other, and handing
+/// their pages back to the kernel and asking for new ones takes a fifth of its time.
+void keep_memory() {
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, 256 << 20);
+    mallopt(M_TOP_PAD, 4 << 20);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    keep_memory();
     try {
         const auto settings = bake::parse_settings(argc, argv);
         if (settings) run(*settings);
