@@ -1,6 +1,7 @@
 // Which of many values are equal, told by hashing.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -40,6 +41,11 @@ class IndexSet {
         slots_[place] = {tag, index};
         if (++size_ > slots_.size() / 4 * 3) grow();
         return index;
+    }
+
+    /// Starts to fetch where find_or_insert will look.
+    void prefetch(std::uint64_t hash) const {
+        __builtin_prefetch(&slots_[static_cast<std::uint32_t>(hash) & (slots_.size() - 1)]);
     }
 
  private:
@@ -101,17 +107,30 @@ class PlacedIndexSet {
 /// equal bits are equal values.
 template <typename Vector>
 std::vector<std::uint32_t> first_equal(std::span<const Vector> values) {
+    const auto hash = [&](std::uint32_t i) {
+        const Vector& value = values[i];
+        if constexpr (Vector::length() == 2) {
+            return hash_of(value.x, value.y);
+        } else {
+            return hash_of(value.x, value.y, value.z);
+        }
+    };
+    // The set is too large for caches: its memory is asked for some values ahead.
+    constexpr std::uint32_t kAhead = 16;
+    std::array<std::uint64_t, kAhead> hashes;
     IndexSet set(values.size());
     std::vector<std::uint32_t> first(values.size());
-    for (std::uint32_t i = 0; i < values.size(); ++i) {
-        const Vector& value = values[i];
-        std::uint64_t hash = 0;
-        if constexpr (Vector::length() == 2) {
-            hash = hash_of(value.x, value.y);
-        } else {
-            hash = hash_of(value.x, value.y, value.z);
+    const auto count = static_cast<std::uint32_t>(values.size());
+    for (std::uint32_t i = 0; i < count + kAhead; ++i) {
+        if (i >= kAhead) {
+            const std::uint32_t v = i - kAhead;
+            first[v] = set.find_or_insert(hashes[v % kAhead], v,
+                                          [&](auto other) { return values[other] == values[v]; });
         }
-        first[i] = set.find_or_insert(hash, i, [&](auto other) { return values[other] == value; });
+        if (i < count) {
+            hashes[i % kAhead] = hash(i);
+            set.prefetch(hashes[i % kAhead]);
+        }
     }
     return first;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
 
@@ -40,6 +41,35 @@ std::string word_at(const char* p) {
 
 const char* skip_blanks(const char* p) {
     while (is_blank(*p)) ++p;
+    return p;
+}
+
+/// The value of plain decimals, "-12.345678" and shorter, with what follows them; null where it
+/// takes fast_float to round as it must.
+const char* short_decimal(const char* p, float& value) {
+    constexpr std::ptrdiff_t kExactDigits = 15;  // whole numbers of so many are exact as doubles
+    constexpr double kPowers[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                                  1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+    const bool negative = *p == '-';
+    p += negative;
+    const char* const start = p;
+    std::uint64_t digits = 0;
+    unsigned digit;
+    for (; (digit = static_cast<unsigned>(*p - '0')) <= 9; ++p) digits = digits * 10 + digit;
+    std::ptrdiff_t count = p - start;
+    std::ptrdiff_t decimals = 0;
+    if (*p == '.') {
+        const char* const point = p++;
+        for (; (digit = static_cast<unsigned>(*p - '0')) <= 9; ++p) digits = digits * 10 + digit;
+        decimals = p - point - 1;
+        count += decimals;
+    }
+    if (count == 0 || count > kExactDigits || !ends_word(*p)) return nullptr;
+    // One division rounds once; rounding again to float goes wrong only from halfway between two.
+    const double wide = static_cast<double>(digits) / kPowers[decimals];
+    constexpr std::uint64_t kBelowFloat = (1u << 29) - 1;
+    if ((std::bit_cast<std::uint64_t>(wide) & kBelowFloat) == 1u << 28) return nullptr;
+    value = static_cast<float>(negative ? -wide : wide) + 0.0f;  // -0 becomes +0
     return p;
 }
 
@@ -140,6 +170,7 @@ const char* ChunkParser::rest(const char* p) {
 
 const char* ChunkParser::number(const char* p, float& value) {
     p = skip_blanks(p);
+    if (const char* const end = short_decimal(p, value)) return end;
     if (is_continuation(p)) return nullptr;
     if (is_line_end(*p) || *p == '#') fail("a number is missing");
     const char* digits = *p == '+' && p[1] != '-' ? p + 1 : p;
