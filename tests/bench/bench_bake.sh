@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
-# Bakes the same OBJ with cw2-bake and with gltfpack (npm's, WebAssembly), by turns, geometry only,
-# and prints medians and ratios: wall and CPU seconds, peak memory, bytes written.
+# Bakes the same OBJ with cw2-bake, with npm's gltfpack (WebAssembly) and, where it is installed, with
+# a native gltfpack (Debian's 0.18 makes no tangents), by turns, geometry only, and prints medians and
+# ratios: wall and CPU seconds, peak memory, bytes written; then how far the frames of each are from
+# MikkTSpace's (bench_frames), and what ten times the triangles cost.
 # Usage: tests/bench/bench_bake.sh [OBJ...]    default: the demo scene and a grid of 1 M triangles
 # RUNS=N sets how often each runs [5]. Wants node, npm and GNU time. A benchmark, no test.
 set -euo pipefail
@@ -14,11 +16,11 @@ if [[ ! -d $work/node_modules/gltfpack ]]; then
     npm install --silent --prefix "$work" gltfpack@1.3.0
 fi
 gltfpack=(node "$work/node_modules/gltfpack/cli.js")
+native=$(command -v gltfpack || true)
 
-# A wavy sheet of 2 * 719^2 = 1,033,922 triangles with UVs and normals.
+# make_grid SIDE FILE: a wavy sheet of 2 * SIDE^2 triangles with UVs and normals.
 make_grid() {
-    awk 'BEGIN {
-        n = 719
+    awk -v n="$1" 'BEGIN {
         for (y = 0; y <= n; ++y) for (x = 0; x <= n; ++x) {
             u = x / n; v = y / n
             h = 0.1 * sin(9 * u) * cos(7 * v)
@@ -32,63 +34,109 @@ make_grid() {
             printf "f %d/%d/%d %d/%d/%d %d/%d/%d\nf %d/%d/%d %d/%d/%d %d/%d/%d\n", \
                 a, a, a, b, b, b, c, c, c, b, b, b, d, d, d, c, c, c
         }
-    }' >"$work/grid.obj"
+    }' >"$2"
 }
 
 # measure NAME OUTPUT COMMAND...: appends "wall cpu KiB bytes" of one run to NAME.
 measure() {
-    local name=$1 output=$2
+    local name=$1 output=$2 TIMEFORMAT='%R %U %S'
     shift 2
     rm -f "$output"
-    /usr/bin/time -f '%e %U %S %M' -o "$work/time" "$@" >/dev/null 2>"$work/log" || {
+    { time /usr/bin/time -f '%M' -o "$work/memory" "$@" >/dev/null 2>"$work/log"; } \
+        2>"$work/time" || {
         cat "$work/log" >&2
         exit 1
     }
-    awk -v bytes="$(stat -c %s "$output")" '{ print $1, $2 + $3, $4, bytes }' "$work/time" \
-        >>"$work/$name.runs"
+    echo "$(<"$work/time") $(tail -1 "$work/memory") $(stat -c %s "$output")" |
+        awk '{ print $1, $2 + $3, $4, $5 }' >>"$work/$name.runs"
 }
 
 # median NAME COLUMN
 median() { awk -v c="$2" '{ print $c }' "$work/$1.runs" | sort -g | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
 
-# compare TITLE OURS THEIRS: one line a program, then the ratios.
-compare() {
-    local title=$1 name column ours=() theirs=()
+# row NAME RUNS: the medians of one program.
+row() {
+    awk -v n="$1" -v w="$(median "$2" 1)" -v c="$(median "$2" 2)" -v m="$(median "$2" 3)" \
+        -v b="$(median "$2" 4)" \
+        'BEGIN { printf "  %-16s %9.3f %9.3f %9.1f %12d\n", n, w, c, m / 1024, b }'
+}
+
+# ratio NAME OURS THEIRS
+ratio() {
+    local column ours=() theirs=()
     for column in 1 2 3 4; do
         ours+=("$(median "$2" $column)") theirs+=("$(median "$3" $column)")
     done
-    printf '%-12s %9s %9s %9s %12s\n' "$title" 'wall s' 'CPU s' 'MiB' 'bytes'
-    for name in ours theirs; do
-        local -n values=$name
-        awk -v n="$([[ $name == ours ]] && echo cw2-bake || echo gltfpack)" \
-            -v w="${values[0]}" -v c="${values[1]}" -v m="${values[2]}" -v b="${values[3]}" \
-            'BEGIN { printf "  %-10s %9.3f %9.3f %9.1f %12d\n", n, w, c, m / 1024, b }'
-    done
-    awk -v a="${ours[*]}" -v b="${theirs[*]}" 'BEGIN {
+    awk -v n="$1" -v a="${ours[*]}" -v b="${theirs[*]}" 'BEGIN {
         split(a, o); split(b, t)
-        printf "  %-10s %9.3f %9.3f %9.3f %12.3f\n", "ratio", o[1] / t[1], o[2] / t[2], o[3] / t[3], o[4] / t[4]
+        printf "  %-16s %9.3f %9.3f %9.3f %12.3f\n", n, o[1] / t[1], o[2] / t[2], o[3] / t[3], o[4] / t[4]
     }'
 }
 
+# compare TITLE KIND: one line a program, then the ratios.
+compare() {
+    printf '%-18s %9s %9s %9s %12s\n' "$1" 'wall s' 'CPU s' 'MiB' 'bytes'
+    row cw2-bake "$2"
+    row 'npm gltfpack' "$2.peer"
+    [[ -z $native ]] || row 'native gltfpack' "$2.native"
+    ratio 'ours / npm' "$2" "$2.peer"
+    [[ -z $native ]] || ratio 'ours / native' "$2" "$2.native"
+}
+
+# turn KIND OUR_OPTIONS -- THEIR_OPTIONS: one run of each program.
+turn() {
+    local kind=$1 ours=()
+    shift
+    for (( ; $# > 0; )); do
+        [[ $1 != -- ]] || break
+        ours+=("$1")
+        shift
+    done
+    shift
+    measure "$kind" "$work/ours.$kind.cw2mesh" "$bake" "$scene" --textures none --quiet \
+        -o "$work/ours.$kind.cw2mesh" "${ours[@]}"
+    measure "$kind.peer" "$work/theirs.glb" "${gltfpack[@]}" -i "$scene" -o "$work/theirs.glb" -gt \
+        -kv -tr "$@"
+    [[ -z $native ]] || measure "$kind.native" "$work/theirs.glb" "$native" -i "$scene" \
+        -o "$work/theirs.glb" -kv -tr "$@"
+}
+
+# frames BITS FORM: how far the frames of both are from MikkTSpace's. Theirs are read from a file
+# that is not encoded: encoding rounds them no less.
+frames() {
+    [[ -x $bench_frames ]] || return 0
+    "${gltfpack[@]}" -i "$scene" -o "$work/theirs.glb" -gt -kv -tr -vp 16 -vt 16 -vn "$1" >/dev/null
+    printf '  frames, %s beside -vn %s: ' "$2" "$1"
+    "$bench_frames" "$scene" "$work/ours.$2.cw2mesh" "$work/theirs.glb"
+}
+
+bench_frames=build/release/bin/bench_frames
 scenes=("$@")
 if [[ ${#scenes[@]} -eq 0 ]]; then
-    [[ -f $work/grid.obj ]] || make_grid
-    scenes=(build/release/assets/demo/courtyard.obj "$work/grid.obj")
+    for side in 227 719; do
+        [[ -f $work/grid$side.obj ]] || make_grid $side "$work/grid$side.obj"
+    done
+    scenes=(build/release/assets/demo/courtyard.obj "$work/grid227.obj" "$work/grid719.obj")
 fi
 for scene in "${scenes[@]}"; do
     echo "$scene: $(stat -c %s "$scene") bytes, $runs runs each"
     rm -f "$work"/*.runs
-    ours=("$bake" "$scene" --textures none --quiet -o "$work/ours.cw2mesh")
-    theirs=("${gltfpack[@]}" -i "$scene" -o "$work/theirs.glb" -gt -kv -tr)
     for ((run = 0; run < runs; ++run)); do
-        measure raw "$work/ours.cw2mesh" "${ours[@]}"
-        measure raw.peer "$work/theirs.glb" "${theirs[@]}"
-        measure quat48 "$work/ours.cw2mesh" "${ours[@]}" --compress
-        measure quat48.peer "$work/theirs.glb" "${theirs[@]}" -cc -vp 16 -vt 16 -vn 16
-        measure quat32 "$work/ours.cw2mesh" "${ours[@]}" --compress --tangent-frame quat32
-        measure quat32.peer "$work/theirs.glb" "${theirs[@]}" -cc -vp 16 -vt 16 -vn 10
+        turn raw --
+        turn quat48 --compress -- -cc -vp 16 -vt 16 -vn 16
+        turn quat32 --compress --tangent-frame quat32 -- -cc -vp 16 -vt 16 -vn 10
     done
-    compare 'raw' raw raw.peer
-    compare '-cc, vn 16' quat48 quat48.peer
-    compare '-cc, vn 10' quat32 quat32.peer
+    compare 'raw' raw
+    compare '-cc, vn 16' quat48
+    compare '-cc, vn 10' quat32
+    frames 16 quat48
+    frames 10 quat32
+    cp "$work/raw.runs" "$work/$(basename "$scene" .obj).raw"
 done
+if [[ $# -eq 0 ]]; then
+    # 1,033,922 triangles beside 103,058.
+    cp "$work/grid227.raw" "$work/small.runs"
+    cp "$work/grid719.raw" "$work/large.runs"
+    echo '10.03 times the triangles'
+    ratio 'times' large small
+fi
