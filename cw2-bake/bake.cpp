@@ -21,6 +21,7 @@
 #include "cw2-bake/up_axis.h"
 #include "cw2-bake/weld.h"
 #include "cw2-bake/write_gltf.h"
+#include "mesh-format/decode.h"
 #include "mesh-format/file.h"
 
 namespace bake {
@@ -177,10 +178,9 @@ std::string export_baked(const Settings& settings) {
         throw BakeError(settings.input.string() + ": is baked already; -o FILE.glb exports it");
     refuse_overwriting(settings, {settings.input});
     const mesh_format::MappedFile file(settings.input);
-    const mesh_format::Document document =
-        mesh_format::parse(file.bytes(), settings.input.string());
-    if (document.is_encoded())
-        throw BakeError(settings.input.string() + ": is compressed; bake without --compress");
+    const std::string name = settings.input.string();
+    mesh_format::Document document = mesh_format::parse(file.bytes(), name);
+    const mesh_format::DecodedGeometry decoded = decode(document, name);
     std::vector<std::span<const std::byte>> payloads;
     for (const TextureRecord& texture : document.textures)
         payloads.push_back(document.payload(texture));

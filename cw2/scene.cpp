@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "cw2/decode.h"
 #include "cw2/decode_textures.h"
 #include "mesh-format/blocks.h"
+#include "mesh-format/decode.h"
 
 namespace cw2 {
 
@@ -287,8 +288,11 @@ std::uint64_t Scene::triangle_count() const {
 
 mesh_format::MappedFile open_scene(const std::filesystem::path& path) {
     mesh_format::MappedFile file(path);
-    const std::string extension = path.extension().string();
-    if (extension == ".obj" || extension == ".OBJ") {
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
+        return static_cast<char>(std::tolower(c));
+    });
+    if (extension == ".obj" || extension == ".gltf" || extension == ".glb") {
         const std::string baked = std::filesystem::path(path).replace_extension("cw2mesh").string();
         throw mesh_format::FileError(fmt::format(
             "{0}: is a source file; bake it first: cw2-bake '{0}' -o '{1}'", path.string(), baked));
@@ -301,15 +305,7 @@ namespace {
 Scene scene_of(const Device& device, const Layouts& layouts, std::span<const std::byte> bytes,
                const std::string& name, const TextureSettings& settings) {
     Document document = mesh_format::parse(bytes, name);
-    DecodedGeometry decoded;
-    if (document.is_encoded()) {
-        decoded = decode(document, name);
-        document.vertices = decoded.vertices;
-        document.indices = decoded.indices;
-        document.encoded_vertices = {};
-        document.encoded_indices = {};
-        mesh_format::check(document, name);
-    }
+    const mesh_format::DecodedGeometry decoded = decode(document, name);
     return {device, layouts, document, settings};
 }
 

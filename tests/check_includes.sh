@@ -8,6 +8,7 @@ set -f
 # files | what they may include besides the standard library and POSIX
 rules='
 mesh-format/*           | mesh-format/*
+mesh-format/decode.cpp  | meshoptimizer.h zstd.h fmt/* tbb/*
 cw2-bake/*              | mesh-format/* cw2-bake/* glm/* fmt/* tbb/* CLI/*
 cw2-bake/*              | meshoptimizer.h zstd.h xxhash.h
 cw2-bake/read_*.cpp     | fast_float/*
@@ -19,7 +20,6 @@ cw2-bake/obj_parser.cpp | fast_float/*
 cw2-bake/image_reader.* | OpenImageIO/*
 cw2/*                   | mesh-format/* cw2/* shaders/interop.h shaders/false_color.h *.vert.h *.frag.h glm/* fmt/*
 cw2/*                   | tbb/* CLI/* vulkan/* glslang/* SPIRV/* png.h Imf*.h
-cw2/*                   | meshoptimizer.h zstd.h xxhash.h
 cw2/config.cpp          | toml++/toml.h
 cw2/window*             | GLFW/*
 cw2/ui_pass.cpp         | imgui.h backends/imgui_impl_*

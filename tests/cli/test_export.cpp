@@ -125,6 +125,9 @@ TEST_F(Export, AnySourceAndBothFormsOfGltfHoldTheSame) {
     const std::string of_baked = read("scene.glb");
     bake_well({"scene.obj", "-o", "scene.glb", "--quiet"});
     EXPECT_TRUE(read("scene.glb") == of_baked);
+    bake_well(exactly({"scene.obj", "-o", "small.cw2mesh", "--compress"}));
+    bake_well({"small.cw2mesh", "-o", "scene.glb", "--quiet"});
+    EXPECT_EQ(read("scene.glb").size(), of_baked.size());
 
     bake_well({"scene.obj", "-o", "scene.gltf", "--quiet"});
     bake_well(exactly({"scene.gltf", "-o", "of_text.cw2mesh"}));

@@ -1,4 +1,4 @@
-#include "cw2/decode.h"
+#include "mesh-format/decode.h"
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>
@@ -8,12 +8,10 @@
 #include <cstring>
 #include <span>
 
-namespace cw2 {
+namespace mesh_format {
 
 namespace {
 
-using mesh_format::Document;
-using mesh_format::MeshRecord;
 using Bytes = std::span<const std::byte>;
 
 // Real scenes shrink to a tenth; a small file must not claim all memory.
@@ -44,7 +42,7 @@ std::vector<unsigned char> unwrap(Bytes frame, std::size_t largest, bool& sound)
 
 bool decode_vertices(const MeshRecord& mesh, Bytes part, std::byte* out) {
     const std::size_t stride =
-        mesh_format::vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
+        vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
     const std::size_t padded = (stride + 3) / 4 * 4;
     bool sound = true;
     const auto stream =
@@ -70,12 +68,13 @@ bool decode_indices(const MeshRecord& mesh, Bytes part, std::uint16_t* out) {
 
 }  // namespace
 
-DecodedGeometry decode(const Document& document, std::string_view name) {
+DecodedGeometry decode(Document& document, std::string_view name) {
+    if (!document.is_encoded()) return {};
     const std::uint64_t stored = document.encoded_vertices.size() + document.encoded_indices.size();
     const std::uint64_t claimed = document.scene.vertex_bytes / kLargestRatio +
                                   document.scene.index_count / kLargestRatio * 2;
     if (claimed > stored) {
-        throw mesh_format::FileError(fmt::format("{}: the scene's sizes are implausible", name));
+        throw FileError(fmt::format("{}: the scene's sizes are implausible", name));
     }
     DecodedGeometry geometry;
     geometry.vertices.resize(document.scene.vertex_bytes);
@@ -87,11 +86,15 @@ DecodedGeometry decode(const Document& document, std::string_view name) {
         const MeshRecord& mesh = document.meshes[i];
         if (!decode_vertices(mesh, vertices[i], geometry.vertices.data() + mesh.vertex_offset) ||
             !decode_indices(mesh, indices[i], geometry.indices.data() + mesh.first_index)) {
-            throw mesh_format::FileError(
-                fmt::format("{}: mesh {}: its encoded geometry is damaged", name, i));
+            throw FileError(fmt::format("{}: mesh {}: its encoded geometry is damaged", name, i));
         }
     });
+    document.vertices = geometry.vertices;
+    document.indices = geometry.indices;
+    document.encoded_vertices = {};
+    document.encoded_indices = {};
+    check(document, name);
     return geometry;
 }
 
-}  // namespace cw2
+}  // namespace mesh_format
