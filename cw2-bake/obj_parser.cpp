@@ -7,6 +7,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 
 #include "cw2-bake/text_lines.h"
 
@@ -44,29 +45,47 @@ const char* skip_blanks(const char* p) {
     return p;
 }
 
+/// Reads the digits at `p`, eight bytes in one go. Returns their number, up to 7; 8 if there may be
+/// more, or if the text ends too soon to tell: then `value` means nothing.
+unsigned leading_digits(const char* p, const char* limit, std::uint64_t& value) {
+    if (limit - p < 8) return 8;
+    std::uint64_t bytes;
+    std::memcpy(&bytes, p, sizeof bytes);
+    bytes ^= 0x3030'3030'3030'3030;  // digits become 0 to 9
+    // The first byte above 9 shows in its top bit; what it carries spoils only those behind it.
+    const std::uint64_t others = (bytes | (bytes + 0x7676'7676'7676'7676)) & 0x8080'8080'8080'8080;
+    const unsigned count = static_cast<unsigned>(std::countr_zero(others)) / 8;
+    if (count == 0 || count == 8) return count;
+    // Zeros take the places before the first digit; then pairs, fours and all eight are joined.
+    bytes <<= 64 - 8 * count;
+    bytes = bytes * (1 + (10 << 8)) >> 8 & 0x00FF'00FF'00FF'00FF;
+    bytes = bytes * (1 + (100 << 16)) >> 16 & 0x0000'FFFF'0000'FFFF;
+    value = bytes * (1 + (10'000ull << 32)) >> 32;
+    return count;
+}
+
 /// The value of plain decimals, "-12.345678" and shorter, with what follows them; null where it
 /// takes fast_float to round as it must.
-const char* short_decimal(const char* p, float& value) {
-    constexpr std::ptrdiff_t kExactDigits = 15;  // whole numbers of so many are exact as doubles
-    constexpr double kPowers[] = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
-                                  1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+const char* short_decimal(const char* p, const char* limit, float& value) {
+    constexpr double kPowers[] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7};
     const bool negative = *p == '-';
     p += negative;
-    const char* const start = p;
     std::uint64_t digits = 0;
-    unsigned digit;
-    for (; (digit = static_cast<unsigned>(*p - '0')) <= 9; ++p) digits = digits * 10 + digit;
-    std::ptrdiff_t count = p - start;
-    std::ptrdiff_t decimals = 0;
+    unsigned count = leading_digits(p, limit, digits);
+    if (count == 0 || count == 8) return nullptr;
+    p += count;
+    std::uint64_t decimals = 0;
+    count = 0;
     if (*p == '.') {
-        const char* const point = p++;
-        for (; (digit = static_cast<unsigned>(*p - '0')) <= 9; ++p) digits = digits * 10 + digit;
-        decimals = p - point - 1;
-        count += decimals;
+        count = leading_digits(++p, limit, decimals);
+        if (count == 8) return nullptr;
+        p += count;
     }
-    if (count == 0 || count > kExactDigits || !ends_word(*p)) return nullptr;
-    // One division rounds once; rounding again to float goes wrong only from halfway between two.
-    const double wide = static_cast<double>(digits) / kPowers[decimals];
+    if (!ends_word(*p)) return nullptr;
+    // At most 14 digits are exact as a double, and one division rounds once; rounding again to
+    // float goes wrong only from halfway between two.
+    const auto power = static_cast<std::uint64_t>(kPowers[count]);
+    const double wide = static_cast<double>(digits * power + decimals) / kPowers[count];
     constexpr std::uint64_t kBelowFloat = (1u << 29) - 1;
     if ((std::bit_cast<std::uint64_t>(wide) & kBelowFloat) == 1u << 28) return nullptr;
     value = static_cast<float>(negative ? -wide : wide) + 0.0f;  // -0 becomes +0
@@ -170,7 +189,7 @@ const char* ChunkParser::rest(const char* p) {
 
 const char* ChunkParser::number(const char* p, float& value) {
     p = skip_blanks(p);
-    if (const char* const end = short_decimal(p, value)) return end;
+    if (const char* const end = short_decimal(p, limit_, value)) return end;
     if (is_continuation(p)) return nullptr;
     if (is_line_end(*p) || *p == '#') fail("a number is missing");
     const char* digits = *p == '+' && p[1] != '-' ? p + 1 : p;
@@ -241,8 +260,14 @@ const char* ChunkParser::index(const char* p, std::uint32_t local_count, std::ui
     p += relative;
     const char* digits = p;
     std::uint64_t value = 0;
-    for (unsigned digit; (digit = static_cast<unsigned>(*p - '0')) <= 9; ++p) {
-        value = value * 10 + digit;
+    const unsigned count = leading_digits(p, limit_, value);
+    if (count < 8) {
+        p += count;
+    } else {
+        value = 0;
+        for (unsigned digit; (digit = static_cast<unsigned>(*p - '0')) <= 9; ++p) {
+            value = value * 10 + digit;
+        }
     }
     if (p == digits) fail(word_at(start) + " is not an index");
     constexpr std::ptrdiff_t kSafeDigits = 18;
