@@ -189,6 +189,11 @@ std::string export_baked(const Settings& settings) {
     return export_summary(settings, document, bytes);
 }
 
+/// The geometry stays one scene from stage to stage, and no stage copies attributes: welding makes
+/// equal corners equal in index; framing makes vertices, which name their attributes; chunks and
+/// meshes name vertices; packing reads each vertex's values once and writes its final bytes. Within
+/// a stage, tasks run over blocks of positions, over halves of halves of a material's triangles, or
+/// over blocks of vertices, so that one large mesh fills all cores as well as many small ones.
 std::string bake(const Settings& settings, const Warn& warn) {
     const std::size_t threads = settings.threads > 0 ? static_cast<std::size_t>(settings.threads)
                                                      : std::thread::hardware_concurrency();

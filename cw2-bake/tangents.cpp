@@ -20,7 +20,7 @@ using glm::vec4;
 
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 constexpr vec4 kUnreached{1.0f, 0.0f, 0.0f, -1.0f};
-constexpr std::uint32_t kPositionsPerBlock = 512;
+constexpr std::uint32_t kPositionsPerBlock = 1024;
 
 bool is_unit(const vec3& v) {
     return std::abs(glm::dot(v, v) - 1.0f) < 1e-3f;
@@ -158,6 +158,7 @@ class SlotTangents {
 void make_vertices(const SourceScene& scene, const CornerSlots& slots,
                    std::span<const vec4> tangents, std::vector<FramedVertex>& vertices,
                    std::vector<std::uint32_t>& indices) {
+    vertices.reserve(slots.vertices.size() * 5 / 4);
     for (const VertexSlots& vertex : slots.vertices) {
         const std::size_t first = vertices.size();
         for (std::uint32_t slot = vertex.first; slot < vertex.end; ++slot) {
