@@ -27,7 +27,7 @@ cw2/panel.cpp           | imgui.h
 shaders/*               | mesh-format/* shaders/*
 shaders/*.h             | glm/*
 '
-standard='^([a-z0-9_]+|(dlfcn|fcntl|unistd)\.h|sys/[a-z]+\.h)$'
+standard='^([a-z0-9_]+|(dlfcn|fcntl|malloc|unistd)\.h|sys/[a-z]+\.h)$'
 status=0
 
 # Whether the file `path` may include `header`.
