@@ -73,7 +73,7 @@ struct GltfPrimitives::Arrays {
 GltfPrimitives::GltfPrimitives(const GltfFile& file, const Warn& warn, SourceScene& scene)
     : file_(file), warn_(warn), scene_(scene), accessors_(file), converter_(file, warn) {
     // Nodes may show a mesh again and again; a small file must not claim all memory.
-    constexpr std::size_t kAlways = std::size_t{1} << 26, kCornersPerByte = 64;
+    constexpr std::size_t kAlways = std::size_t{1} << 24, kCornersPerByte = 64;
     std::size_t bytes = 0;
     for (const auto& buffer : file.buffers) bytes += buffer.size();
     most_corners_ = std::clamp(kCornersPerByte * bytes, kAlways, std::size_t{kAbsent} - 1);
@@ -89,11 +89,18 @@ const GltfPrimitives::Material& GltfPrimitives::material(int index) {
     return entry->second;
 }
 
-void GltfPrimitives::count_corners(std::size_t corners, const std::string& place) {
-    corners_ += corners;
+void GltfPrimitives::expect_mesh(int mesh) {
+    for (const auto& primitive : file_.model.meshes[static_cast<std::size_t>(mesh)].primitives) {
+        const auto positions = primitive.attributes.find("POSITION");
+        if (positions == primitive.attributes.end()) continue;
+        const int counted = primitive.indices >= 0 ? primitive.indices : positions->second;
+        const bool is_list = primitive.mode == TINYGLTF_MODE_TRIANGLES;
+        corners_ += accessors_.count(counted) * (is_list ? 1 : 3);
+    }
     if (corners_ > most_corners_) {
-        fail_at(file_.path, place,
-                fmt::format("with it the scene has more than {} corners, implausible for its bytes",
+        fail_at(file_.path, fmt::format("/meshes/{}", mesh),
+                fmt::format("its nodes give the scene more than {} corners, implausible for the "
+                            "file's bytes",
                             most_corners_));
     }
 }
@@ -153,7 +160,6 @@ void GltfPrimitives::add_primitive(const tinygltf::Primitive& primitive, const s
                     fmt::format("refers to vertex {} of {}", index, arrays.count));
     }
     const auto triangles = triangles_of(mode, indices);
-    count_corners(3 * triangles.size(), place);
 
     const glm::dmat3 linear(world_from_mesh);
     const glm::dmat3 of_normals = normal_matrix(linear);

@@ -25,6 +25,10 @@ class GltfPrimitives {
     /// All must outlive this.
     GltfPrimitives(const GltfFile& file, const Warn& warn, SourceScene& scene);
 
+    /// To be called for each mesh that will be added, before any is: throws BakeError where they
+    /// are so many that a small file would claim all memory.
+    void expect_mesh(int mesh);
+
     /// Adds the mesh's triangles, transformed. Throws BakeError.
     void add_mesh(int mesh, const glm::dmat4& world_from_mesh);
 
@@ -43,7 +47,6 @@ class GltfPrimitives {
                        const std::string& place);
     void add_primitive(const tinygltf::Primitive& primitive, const std::string& place,
                        const glm::dmat4& world_from_mesh);
-    void count_corners(std::size_t corners, const std::string& place);
 
     const GltfFile& file_;
     const Warn& warn_;

@@ -196,6 +196,7 @@ SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn) {
 
     const Instances instances = walk(file.model);
     GltfPrimitives primitives(file, warn, scene);
+    for (const Placed& mesh : instances.meshes) primitives.expect_mesh(mesh.index);
     for (const Placed& mesh : instances.meshes)
         primitives.add_mesh(mesh.index, mesh.world_from_node);
     primitives.warn_of_left_out();

@@ -182,7 +182,7 @@ TEST_F(GltfMalformed, ManyInstancesOfAMeshDoNotTakeAllMemory) {
     gltf.root["nodes"] = nodes;
     gltf.root.erase("scene");
     const std::string message = error(gltf);
-    EXPECT_NE(message.find("implausible for its bytes"), message.npos) << message;
+    EXPECT_NE(message.find("implausible for the file's bytes"), message.npos) << message;
 }
 
 /// Any bytes are read or refused with one line, and nothing else happens.
