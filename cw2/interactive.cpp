@@ -20,6 +20,7 @@
 #include "cw2/presenter.h"
 #include "cw2/scene.h"
 #include "cw2/shader_compiler.h"
+#include "cw2/title.h"
 #include "cw2/ui_pass.h"
 #include "cw2/viewer_state.h"
 #include "cw2/window.h"
@@ -31,8 +32,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How often the title is written anew.
-constexpr double kTitleSeconds = 0.25;
 /// How long one waits for an event where nothing happens.
 constexpr double kIdleSeconds = 0.25;
 /// How often one looks whether the scene's file has changed.
@@ -63,34 +62,6 @@ Options resolved(Options options, const Device& device) {
     if (!options.samples) options.samples = device.is_cpu() ? 1 : 4;
     return options;
 }
-
-/// Writes the window's title: the scene, the view and the time of a frame, after an error if there
-/// is one.
-class Title {
- public:
-    Title(Window& window, std::string scene) : window_(window), scene_(std::move(scene)) {}
-
-    void set_error(std::string error) { error_ = std::move(error); }
-
-    /// What is new shows at once, but the time every now and then only.
-    void update(const FrameSettings& settings, std::optional<double> milliseconds) {
-        std::string words = fmt::format("{} - {}", scene_, kViewNames[settings.view]);
-        if (settings.split) words += fmt::format(" | {}", kViewNames[settings.split->right.view]);
-        if (!error_.empty()) words = error_ + " - " + words;
-        if (words == words_ && seconds_since(written_) < kTitleSeconds) return;
-        window_.set_title(milliseconds ? fmt::format("{} - {:.1f} ms", words, *milliseconds)
-                                       : words);
-        words_ = std::move(words);
-        written_ = Clock::now();
-    }
-
- private:
-    Window& window_;
-    std::string scene_;
-    std::string error_;
-    std::string words_;  ///< shown, but for the time
-    Clock::time_point written_;
-};
 
 /// What happens while the window is open.
 class Session {

@@ -10,6 +10,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "cw2/legend.h"
+#include "cw2/panel_widgets.h"
 #include "cw2/view.h"
 #include "shaders/false_color.h"
 
@@ -20,8 +21,7 @@ namespace {
 constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
 constexpr ImGuiColorEditFlags kColor =
     ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_NoLabel;
-constexpr float kLabelWidth = 7.5f;  // of what is at the left of a row, in font sizes
-constexpr float kLargest = 1e6f;     // coordinate and colour that can be entered
+constexpr float kLargest = 1e6f;  // coordinate and colour that can be entered
 
 struct KeyHelp {
     const char* keys;
@@ -43,37 +43,6 @@ constexpr std::array kKeys{
     KeyHelp{"F5, Ctrl+R", "reloads the shaders"},
     KeyHelp{"Escape", "ends"},
 };
-
-void text(const std::string& words) {
-    ImGui::TextUnformatted(words.data(), words.data() + words.size());
-}
-
-void dim_text(const std::string& words) {
-    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    ImGui::PushTextWrapPos(0.0f);
-    text(words);
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
-}
-
-/// Puts `name` at the left; what follows has the rest of the row.
-void label(const char* name) {
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(name);
-    ImGui::SameLine(kLabelWidth * ImGui::GetFontSize());
-    ImGui::SetNextItemWidth(-1.0f);
-}
-
-/// A row of a table of readings.
-void reading(const char* name, const std::string& value) {
-    ImGui::TextUnformatted(name);
-    ImGui::SameLine(kLabelWidth * ImGui::GetFontSize());
-    text(value);
-}
-
-bool section(const char* name, bool open = true) {
-    return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
-}
 
 /// A colour that stays finite and not negative.
 void color(const char* name, const char* id, glm::vec3& value) {
@@ -298,108 +267,12 @@ void key_section() {
     }
 }
 
-/// Thousands apart.
-std::string count(std::uint64_t number) {
-    const std::string digits = std::to_string(number);
-    std::string result;
-    for (std::size_t i = 0; i < digits.size(); ++i) {
-        if (i > 0 && (digits.size() - i) % 3 == 0) result += ' ';
-        result += digits[i];
-    }
-    return result;
-}
-
-std::string milliseconds(const std::optional<double>& time) {
-    return time ? fmt::format("{:.2f} ms", *time) : std::string("-");
-}
-
-void frame_section(const PanelFacts& facts) {
-    if (!section("Frame")) return;
-    dim_text(facts.device);
-    reading("size", fmt::format("{} x {}", facts.extent.width, facts.extent.height));
-    reading("CPU", milliseconds(facts.times.cpu));
-    reading("GPU", milliseconds(facts.times.gpu));
-    reading("triangles",
-            fmt::format("{} of {}", count(facts.counts.triangles), count(facts.triangles)));
-    reading("draws", count(facts.counts.draws));
-    const auto mebibytes = [](std::uint64_t bytes) {
-        return static_cast<double>(bytes) / (1024.0 * 1024.0);
-    };
-    reading("memory", fmt::format("{:.1f} MiB scene", mebibytes(facts.scene_bytes)));
-    reading("", fmt::format("{:.1f} MiB images", mebibytes(facts.image_bytes)));
-}
-
-void pick_section(const PanelFacts& facts) {
-    if (!section("Pixel")) return;
-    if (!facts.pick) {
-        dim_text("click the picture to read the numbers of a pixel");
-        return;
-    }
-    const Pick& pick = *facts.pick;
-    const auto number = [](float value) { return fmt::format("{:.4g}", value); };
-    const auto vector = [](const glm::vec3& v) {
-        return fmt::format("{:<8.3g} {:<8.3g} {:.3g}", v.x, v.y, v.z);
-    };
-    const auto direction = [](const glm::vec3& v) {
-        return fmt::format("{:<8.4f} {:<8.4f} {:.4f}", v.x, v.y, v.z);
-    };
-    reading("pixel", fmt::format("{}, {}", pick.pixel.x, pick.pixel.y));
-    reading("material", facts.picked_material);
-    reading("position", vector(pick.position));
-    reading("normal n", direction(pick.normal));
-    reading("base colour", vector(pick.base_color));
-    reading("roughness", number(pick.roughness));
-    reading("metalness", number(pick.metalness));
-    ImGui::Separator();
-    reading("n.l", number(pick.n_dot_l()));
-    reading("n.v", number(pick.n_dot_v()));
-    reading("n.h", number(pick.n_dot_h()));
-    reading("v.h", number(pick.v_dot_h()));
-    ImGui::Separator();
-    reading("D", number(pick.distribution));
-    reading("G", number(pick.masking));
-    reading("F", vector(pick.fresnel));
-    reading("diffuse", vector(pick.diffuse));
-    reading("specular", vector(pick.specular));
-    reading("shaded", vector(pick.shaded));
-    // A cross-hair in the picture, black and white, so that it is seen on anything.
-    const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
-    const ImVec2 at{(static_cast<float>(pick.pixel.x) + 0.5f) / scale.x,
-                    (static_cast<float>(pick.pixel.y) + 0.5f) / scale.y};
-    for (const auto& [thickness, ink] : {std::pair{3.0f, IM_COL32_BLACK}, {1.0f, IM_COL32_WHITE}}) {
-        const float width = thickness * facts.scale;
-        for (const float side : {-1.0f, 1.0f}) {
-            const float near = 4.0f * side * facts.scale, far = 10.0f * side * facts.scale;
-            ImDrawList* const list = ImGui::GetBackgroundDrawList();
-            list->AddLine({at.x + near, at.y}, {at.x + far, at.y}, ink, width);
-            list->AddLine({at.x, at.y + near}, {at.x, at.y + far}, ink, width);
-        }
-    }
-}
-
-/// A window of fixed width, as high as it must be, but never higher than the picture.
-void begin_window(const char* name, float left, float width, float scale) {
-    const float margin = 8.0f * scale;
-    const float height = std::max(ImGui::GetIO().DisplaySize.y - 2.0f * margin, 4.0f * margin);
-    ImGui::SetNextWindowPos({left, margin}, ImGuiCond_Appearing);
-    ImGui::SetNextWindowSizeConstraints({width, 0.0f}, {width, height});
-    ImGui::Begin(name, nullptr,
-                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-}
-
 }  // namespace
 
 std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state) {
     std::vector<Command> commands;
-    const float margin = 8.0f * facts.scale;
-    const float reading_width = 294.0f * facts.scale;
-    begin_window("Readings", ImGui::GetIO().DisplaySize.x - reading_width - margin, reading_width,
-                 facts.scale);
-    frame_section(facts);
-    pick_section(facts);
-    ImGui::End();
-
-    begin_window("cw2", margin, 344.0f * facts.scale, facts.scale);
+    draw_readings(facts);
+    begin_window("cw2", 8.0f * facts.scale, 344.0f * facts.scale, facts.scale);
     view_section(state.options);
     value_section(state.options);
     light_section(state, facts.bounds);

@@ -38,7 +38,10 @@ struct PanelState {
     bool light_moves;
 };
 
-/// Draws all of it; gives the commands of the buttons pressed.
+/// Draws what can be read off.
+void draw_readings(const PanelFacts& facts);
+
+/// Draws all of it, the readings too; gives the commands of the buttons pressed.
 std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state);
 
 /// The camera as options of the command line.

@@ -73,7 +73,7 @@ void set_style(float scale) {
     style.FramePadding = {6.0f, 2.0f};
     style.ItemSpacing = {6.0f, 4.0f};
     style.ScaleAllSizes(scale);
-    style.Colors[ImGuiCol_WindowBg] = {0.14f, 0.15f, 0.16f, 0.97f};
+    style.Colors[ImGuiCol_WindowBg] = {0.14f, 0.15f, 0.16f, 1.0f};
     style.Colors[ImGuiCol_PopupBg] = {0.10f, 0.11f, 0.12f, 1.0f};
     style.Colors[ImGuiCol_TextDisabled] = {0.65f, 0.66f, 0.68f, 1.0f};
     for (const ImGuiCol title : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_Header}) {

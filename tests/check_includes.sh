@@ -23,7 +23,7 @@ cw2/*                   | tbb/* CLI/* vulkan/* glslang/* SPIRV/* png.h Imf*.h
 cw2/config.cpp          | toml++/toml.h
 cw2/window*             | GLFW/*
 cw2/ui_pass.cpp         | imgui.h backends/imgui_impl_*
-cw2/panel.cpp           | imgui.h
+cw2/panel*.cpp          | imgui.h
 shaders/*               | mesh-format/* shaders/*
 shaders/*.h             | glm/*
 '

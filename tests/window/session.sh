@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# A display of its own, a window of cw2 in it, and a user; sourced by window_test.sh, whose $work
-# is where everything is written. Nothing here waits for a time, only for what should happen.
+# A display of its own, a window of cw2 in it, and a user; sourced by scripts whose $work is where
+# everything is written, and $scene what cw2 shows. Nothing here waits for a time, only for what should happen.
 
 window_process=
 display_process=
@@ -42,7 +42,7 @@ start_display() {
     done
     # The server chooses a free number and says it. It would start anew whenever its last client
     # leaves, just when cw2 comes.
-    Xvfb -displayfd 3 -screen 0 800x600x24 -nolisten tcp -noreset \
+    Xvfb -displayfd 3 -screen 0 "${screen:-800x600x24}" -nolisten tcp -noreset \
         3>"$work/display" >"$work/xvfb.log" 2>&1 &
     display_process=$!
     wait_until test -s "$work/display"
@@ -56,7 +56,7 @@ has_focus() {
 }
 
 find_window() {
-    window=$(xdotool search --onlyvisible --name stage.cw2mesh)
+    window=$(xdotool search --onlyvisible --name "${scene##*/}")
     [[ -n $window ]]
 }
 

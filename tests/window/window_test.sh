@@ -311,6 +311,34 @@ check_reloads_the_scene() {
     close_window
 }
 
+# The panel looks as it was found right; CW2_UPDATE_GOLDENS takes what it looks like now.
+check_draws_the_panel() {
+    local golden=$sources/tests/window/panel.png
+    open_window "$cw2" "$scene" --size 790x590 --samples 1 "${camera[@]}" --split base-color,shaded \
+        --false-color 0,1 --roughness 0.25 --view normal
+    press Tab
+    take_window_picture
+    # The readings of the frame tell times; they are closed.
+    local shown=$picture
+    click 600 40
+    wait_until window_picture_differs_from "$shown"
+    shown=$picture
+    click 500 420
+    wait_until grep -q '^pixel 500,420' "$work/out"
+    wait_until window_picture_differs_from "$shown"
+    # The cursor goes where it lights up nothing; the words under the buttons stay the same.
+    xdotool mousemove --window "$window" 440 500
+    press ctrl+c
+    wait_until grep -q -- --camera-position "$work/out"
+    take_window_picture
+    if [[ -n ${CW2_UPDATE_GOLDENS:-} ]]; then
+        cp "$picture" "$golden"
+    else
+        "$tools/compare_images" --report "$work/report" "$golden" "$picture" || fail "the panel"
+    fi
+    close_window
+}
+
 # Presses and lets go a mouse button at X Y; the window draws in between, as it does for a user.
 click() {
     xdotool mousemove --window "$window" "$1" "$2" mousedown "${3:-1}"
