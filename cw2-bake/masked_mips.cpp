@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "cw2-bake/every_cpu.h"
 #include "cw2-bake/mip_chain.h"
 #include "cw2-bake/row_ring.h"
 
@@ -12,47 +12,63 @@ namespace {
 
 using mesh_format::TextureFormat;
 
-/// How the values of a level become a mask: those from `smallest_shown` on are shown.
-struct Coverage {
-    float scale;
-    float smallest_shown;
-};
+/// How many of the values between a row's texels and those at their right are at or above
+/// `threshold`, `share` of the way from the one to the other. `row` has one texel more.
+CW2_EVERY_CPU std::uint32_t count_shown(const float* row, std::uint32_t width, float share,
+                                        float threshold) {
+    std::uint32_t count = 0;
+    for (std::uint32_t x = 0; x < width; ++x) {
+        count += row[x] + (row[x + 1] - row[x]) * share >= threshold ? 1u : 0u;
+    }
+    return count;
+}
 
-/// Finds the scale nearest to 1 that brings `target` of the values to `threshold` or above it and
-/// leaves the others below; of equal values all or none are shown, what comes nearer to `target`.
-Coverage keep_coverage(std::vector<float> values, std::size_t target, float threshold) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    const auto reach = [&](float limit) {
-        return static_cast<std::size_t>(
-            std::ranges::count_if(values, [&](float value) { return value >= limit; }));
-    };
-    const auto nth_largest = [&](std::size_t n) {
-        const auto nth = values.begin() + static_cast<std::ptrdiff_t>(n - 1);
-        std::nth_element(values.begin(), nth, values.end(), std::greater<>());
-        return *nth;
-    };
-    // No scale brings zero to the threshold.
-    target = std::min(target, reach(std::numeric_limits<float>::min()));
-    float shown = target > 0 ? nth_largest(target) : kInfinity;
-    float hidden = target < values.size() ? nth_largest(target + 1) : 0.0f;
-    if (shown == hidden) {
-        float above = kInfinity;
-        float below = 0.0f;
-        for (const float value : values) {
-            above = value > shown ? std::min(above, value) : above;
-            below = value < shown ? std::max(below, value) : below;
-        }
-        const std::size_t with = reach(shown);
-        const std::size_t without = reach(above);
-        if (with - target <= target - without) {
-            hidden = below;
-        } else {
-            shown = above;
+CW2_EVERY_CPU void mix_rows(const float* above, const float* below, float share, float scale,
+                            std::span<float> out) {
+    for (std::size_t x = 0; x < out.size(); ++x) {
+        const float a = std::min(above[x] * scale, 1.0f);
+        const float b = std::min(below[x] * scale, 1.0f);
+        out[x] = a + (b - a) * share;
+    }
+}
+
+/// What a renderer shows of a mask: the share of its area at or above `threshold` where its texels,
+/// times `scale` and at most 1, are filtered linearly and repeat.
+double shown_share(Level& level, float scale, float threshold) {
+    // Samples between neighbours, along each axis: more where there are few texels.
+    const int samples = level.texels.size() > 4096 ? 2 : 8;
+    std::vector<float> mixed(std::size_t{level.width} + 1);
+    std::uint64_t count = 0;
+    for (std::uint32_t y = 0; y < level.height; ++y) {
+        const float* above = level.row(y).data();
+        const float* below = level.row(neighbour(y, 1, level.height, false)).data();
+        for (int j = 0; j < samples; ++j) {
+            const float down = (static_cast<float>(j) + 0.5f) / static_cast<float>(samples);
+            mix_rows(above, below, down, scale, std::span(mixed).first(level.width));
+            mixed.back() = mixed.front();
+            for (int i = 0; i < samples; ++i) {
+                const float across = (static_cast<float>(i) + 0.5f) / static_cast<float>(samples);
+                count += count_shown(mixed.data(), level.width, across, threshold);
+            }
         }
     }
-    const float least = threshold / shown;
-    const float most = hidden > 0.0f ? threshold / hidden : kInfinity;
-    return {std::clamp(1.0f, least, std::max(least, most)), shown};
+    return static_cast<double>(count) /
+           (static_cast<double>(level.texels.size()) * samples * samples);
+}
+
+/// The scale that brings what is shown of the level to `share`; 1 where it is there already.
+float keep_coverage(Level& level, double share, float threshold) {
+    constexpr double kNear = 0.002;
+    if (std::abs(shown_share(level, 1.0f, threshold) - share) <= kNear) return 1.0f;
+    float low = 1.0f / 16.0f;
+    float high = 64.0f;
+    for (int step = 0; step < 14; ++step) {
+        const float middle = std::sqrt(low * high);
+        (shown_share(level, middle, threshold) < share ? low : high) = middle;
+    }
+    const double too_little = share - shown_share(level, low, threshold);
+    const double too_much = shown_share(level, high, threshold) - share;
+    return too_little < too_much ? low : high;
 }
 
 /// Divides by the weight in the fourth channel, which becomes 1, or 0 where nothing counts.
@@ -184,21 +200,20 @@ std::vector<std::byte> filter_mask(const TexelSource& source, float cutoff) {
         encode_unorm8(texels, out);
         covered += static_cast<std::size_t>(std::count_if(out, out + source.width, shown));
     };
-    const double coverage_unit = 1.0 / (static_cast<double>(source.width) * source.height);
     std::vector<Level> levels = smaller_levels(encoding);
+    const double share =
+        static_cast<double>(covered) / (static_cast<double>(source.width) * source.height);
     for (std::size_t i = 0; i < levels.size(); ++i) {
         const std::vector<float>& texels = levels[i].texels;
-        const auto target = static_cast<std::size_t>(std::lround(
-            static_cast<double>(covered) * coverage_unit * static_cast<double>(texels.size())));
-        const Coverage kept = keep_coverage(texels, target, shown_from(cutoff));
+        const float threshold = shown_from(cutoff);
+        const float scale = keep_coverage(levels[i], share, threshold);
         std::byte* out = level_bytes(payload, kFormat, source, static_cast<std::uint32_t>(i + 1));
         for (std::size_t t = 0; t < texels.size(); ++t) {
             // Rounding must not move a texel across the cutoff.
             const auto byte =
-                static_cast<std::uint32_t>(std::min(texels[t] * kept.scale, 1.0f) * 255.0f + 0.5f);
-            out[t] = static_cast<std::byte>(texels[t] >= kept.smallest_shown
-                                                ? std::max(byte, limit)
-                                                : std::min(byte, limit - 1));
+                static_cast<std::uint32_t>(std::min(texels[t] * scale, 1.0f) * 255.0f + 0.5f);
+            out[t] = static_cast<std::byte>(
+                texels[t] * scale >= threshold ? std::max(byte, limit) : std::min(byte, limit - 1));
         }
     }
     return payload;

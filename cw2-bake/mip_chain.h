@@ -55,8 +55,9 @@ std::vector<std::byte> filter_chain(mesh_format::TextureFormat format, const Tex
                                     const RowEncoder& encode);
 
 /// The payload of an alpha mask (r8_unorm; values in [0, 1]): each level is scaled so that the
-/// share of its texels at or above `cutoff` is that of level 0, as near as its texels allow.
-/// After Castano, "Computing alpha mipmaps", 2010.
+/// share of its area at or above `cutoff`, filtered linearly, is that of level 0's texels, as near
+/// as its texels allow. After Castano, "Computing alpha mipmaps", 2010, who counts texels; between
+/// them small leaves would vanish.
 std::vector<std::byte> filter_mask(const TexelSource& source, float cutoff);
 
 /// The payload of the base colour (rgba8_srgb) under an alpha mask. `source` has four channels:

@@ -1,5 +1,6 @@
 #include "tests/render/drawing.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "tests/support/process.h"
@@ -22,8 +23,11 @@ std::filesystem::path bake_scene(const std::filesystem::path& obj,
                                  const std::vector<std::string>& options) {
     std::filesystem::path baked = obj;
     baked.replace_extension(".cw2mesh");
-    run_silently(
-        {BAKE_PROGRAM, obj, "-o", baked, "--strict", "--quiet", "--textures", "lossless"}, options);
+    std::vector<std::string> command{BAKE_PROGRAM, obj, "-o", baked, "--strict", "--quiet"};
+    if (std::ranges::find(options, "--textures") == options.end()) {
+        command.insert(command.end(), {"--textures", "lossless"});
+    }
+    run_silently(command, options);
     return baked;
 }
 

@@ -7,7 +7,8 @@
 
 #include "tests/support/image.h"
 
-/// Bakes `obj` beside itself and returns the path of the baked file. Any message is an error.
+/// Bakes `obj` beside itself, textures lossless unless the options say otherwise, and returns the
+/// path of the baked file. Any message is an error.
 std::filesystem::path bake_scene(const std::filesystem::path& obj,
                                  const std::vector<std::string>& options = {});
 
