@@ -366,7 +366,8 @@ CW2_INLINE bool any(Ints mask) {
 CW2_INLINE void pack(const Candidate& best, Ints& low, Ints& high) {
     const Ints first = best.ends.first[0] << 11 | best.ends.first[1] << 5 | best.ends.first[2];
     const Ints second = best.ends.second[0] << 11 | best.ends.second[1] << 5 | best.ends.second[2];
-    // The larger comes first: else a block would mean three colours and black.
+    // The larger comes first: else a block would mean three colours and black. (Between equal ends
+    // match() makes no step, and index 0 is the same in both.)
     const Ints swapped = first < second;
     low = swapped ? second | first << 16 : first | second << 16;
     high = Ints{};
@@ -377,7 +378,6 @@ CW2_INLINE void pack(const Candidate& best, Ints& low, Ints& high) {
         const Ints index = along == 0 ? Ints{} : along == 3 ? Ints{} + 1 : along + 1;
         high |= index << 2 * i;
     }
-    high = first == second ? Ints{} : high;
 }
 
 CW2_INLINE double encode_colors(const Place& place, std::byte* out) {

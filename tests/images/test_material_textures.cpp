@@ -307,6 +307,26 @@ TEST(Blocks, BumpsBecomeRoughnessAtSmallerLevelsWithTheFactorInIt) {
     EXPECT_FALSE(lossless.materials[0].roughness_holds_factor);
 }
 
+TEST(Blocks, LowerBumpsMakeLessRoughness) {
+    const TemporaryFolder folder;
+    write_image(folder / "bumps.png", 32, 32, 3, [](int x, int y) {
+        return std::vector{0.5 + 0.3 * std::sin(2.0 * x), 0.5 + 0.3 * std::sin(1.7 * y), 0.9};
+    });
+    const auto last_roughness = [&](float scale) {
+        SourceMaterial material;
+        material.roughness = 0.3f;
+        material.normal_map = map_of(folder / "bumps.png");
+        material.normal_scale = scale;
+        const TextureSet set =
+            bake::bake_textures({{material}}, bake::TextureMode::bc, {},
+                                [](const std::string& line) { ADD_FAILURE() << line; }, {});
+        const Texture& texture = set.textures.at(set.materials[0].roughness);
+        return std::to_integer<int>(texture.payload[texture.payload.size() - 16]);
+    };
+    EXPECT_LT(last_roughness(0.5f), last_roughness(1.0f));
+    EXPECT_LT(last_roughness(1.0f), last_roughness(2.0f));
+}
+
 TEST(Blocks, EveryUseHasItsFormat) {
     const TemporaryFolder folder;
     const auto ramp = [](int x, int y) {
