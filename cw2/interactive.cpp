@@ -286,6 +286,7 @@ class Session {
                 reload_scene(device_, layouts_, path, texture_settings(state_.options(), device_)));
             presenter_.finish();
             scene_ = std::move(scene);
+            pick_.reset();  // it names a material of the old scene
             state_.set_bounds(scene_->bounds());
             title_.set_error({});
             message_ = fmt::format("{} has changed: reloaded", path.filename().string());

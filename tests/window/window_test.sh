@@ -272,12 +272,16 @@ check_reloads_the_scene() {
     local scene_before=$scene
     scene=$work/stage.cw2mesh
     cp "$scene_before" "$scene"
-    open_window "$cw2" "$scene" "${options[@]}"
+    open_window "$cw2" "$scene" "${large[@]}"
     xdotool keydown w
     take_picture
     local start=$picture
     wait_until picture_differs_from "$start"
     xdotool keyup w
+    # With a pixel whose numbers are shown, also of the next scene.
+    press Tab
+    click 420 400
+    wait_until grep -q '^pixel 420,400' "$work/out"
     press v
     take_picture
     start=$picture
