@@ -41,10 +41,12 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
         "cw2; or that file, or any of these, into a glTF.",
         "cw2-bake");
     app.set_version_flag("--version", "cw2-bake " CW2_VERSION);
-    app.add_option("INPUT", settings.input, "scene to bake (.obj, .gltf, .glb), or a baked file to export or inspect")
+    app.add_option("INPUT", settings.input,
+                   "scene to bake (.obj, .gltf, .glb), or a baked file to export or inspect")
         ->required()
         ->type_name("FILE");
-    app.add_option("-o,--output", settings.output, "file to write; .glb or .gltf exports [INPUT as .cw2mesh]")
+    app.add_option("-o,--output", settings.output,
+                   "file to write; .glb or .gltf exports [INPUT as .cw2mesh]")
         ->type_name("FILE.cw2mesh|FILE.glb|FILE.gltf");
     add_choice<bool>(app, "--up", settings.z_up, {{"y", false}, {"z", true}},
                      "the input's up axis [y]");
@@ -58,11 +60,10 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
         app, "--positions", settings.position_form,
         {{"quantised", PositionForm::quantised}, {"f32", PositionForm::f32}},
         "how a vertex holds its position; f32 keeps UVs as floats, too [quantised]");
-    add_choice<TextureMode>(app, "--textures", settings.textures,
-                            {{"bc", TextureMode::bc},
-                             {"lossless", TextureMode::lossless},
-                             {"none", TextureMode::none}},
-                            "how textures are stored [bc]");
+    add_choice<TextureMode>(
+        app, "--textures", settings.textures,
+        {{"bc", TextureMode::bc}, {"lossless", TextureMode::lossless}, {"none", TextureMode::none}},
+        "how textures are stored [bc]");
     app.add_flag("--compress", settings.compress,
                  "store vertices and indices in fewer bytes, without loss");
     app.add_option("--threads", settings.threads, "threads to use [one a processor]")

@@ -24,8 +24,8 @@ struct ConfigEntry {
 
 /// Reads the TOML of a config file: top-level keys, each once, whose values are strings, numbers,
 /// booleans, or arrays of these; in the file's order. (CLI11's own reader cuts strings at '#' and
-/// knows neither escapes nor lines.) Throws mesh_format::FileError where the file cannot be read, and UsageError
-/// "PATH:LINE: what is wrong".
+/// knows neither escapes nor lines.) Throws mesh_format::FileError where the file cannot be read,
+/// and UsageError "PATH:LINE: what is wrong".
 std::vector<ConfigEntry> read_config(const std::filesystem::path& path);
 
 /// `text` as a TOML string, quotes included.

@@ -289,9 +289,8 @@ std::uint64_t Scene::triangle_count() const {
 mesh_format::MappedFile open_scene(const std::filesystem::path& path) {
     mesh_format::MappedFile file(path);
     std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) {
-        return static_cast<char>(std::tolower(c));
-    });
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".obj" || extension == ".gltf" || extension == ".glb") {
         const std::string baked = std::filesystem::path(path).replace_extension("cw2mesh").string();
         throw mesh_format::FileError(fmt::format(

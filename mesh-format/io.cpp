@@ -94,8 +94,7 @@ void OutputFile::commit() {
     // mkostemp makes files that only their owner may read; a new file has the process's mode.
     const mode_t mask = ::umask(0);
     ::umask(mask);
-    if (::fchmod(descriptor_, 0666 & ~mask) != 0 ||
-        !replace(temporary_.c_str(), target_.c_str())) {
+    if (::fchmod(descriptor_, 0666 & ~mask) != 0 || !replace(temporary_.c_str(), target_.c_str())) {
         fail_errno(target_, "cannot be written");
     }
     ::close(std::exchange(descriptor_, -1));

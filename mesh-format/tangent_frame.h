@@ -47,8 +47,8 @@ struct TangentFrame {
 /// Returns the angle of the rotation between `frame` and its code, degrees; 0 for f32.
 double pack_frame(FrameForm form, const TangentFrame& frame, std::byte* out);
 
-/// As pack_frame for each of `frames`, several times as fast: frame i goes to out + i * stride, what
-/// pack_frame returns to degrees[i].
+/// As pack_frame for each of `frames`, several times as fast: frame i goes to out + i * stride,
+/// what pack_frame returns to degrees[i].
 void pack_frames(FrameForm form, std::span<const TangentFrame> frames, std::byte* out,
                  std::size_t stride, double* degrees);
 
