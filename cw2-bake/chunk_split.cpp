@@ -6,19 +6,22 @@
 #include <limits>
 #include <vector>
 
+#include "cw2-bake/raw_vector.h"
+
 namespace bake {
 namespace {
 
 constexpr std::size_t kBins = 256;
+constexpr float kLastBin = kBins - 1;
 
 /// Sorts coordinates roughly: of two bins, all of one come before all of the other.
 class Bins {
  public:
-    Bins(float low, float high)
-        : low_(low), scale_(high > low ? static_cast<float>(kBins - 1) / (high - low) : 0.0f) {}
+    Bins(float low, float high) : low_(low), scale_(high > low ? kLastBin / (high - low) : 0.0f) {}
 
-    std::size_t of(float coordinate) const {
-        return std::min(static_cast<std::size_t>((coordinate - low_) * scale_), kBins - 1);
+    std::uint8_t of(float coordinate) const {
+        // In this order the last bin takes what is not a number, too.
+        return static_cast<std::uint8_t>(std::min(kLastBin, (coordinate - low_) * scale_));
     }
 
  private:
@@ -31,22 +34,32 @@ struct Key {
     auto operator<=>(const Key&) const = default;
 };
 
-/// The key that `rank` others come before.
-Key nth_key(std::span<const CentredTriangle> triangles, int axis, const Bins& bins,
-            std::size_t rank) {
+struct Cut {
+    std::uint8_t bin;
+    Key first_high;  ///< the first key of the high half; in `bin`
+};
+
+/// Writes the bin of each triangle to `bins`, and finds the key that `rank` others come before.
+Cut find_cut(std::span<const CentredTriangle> triangles, int axis, const Bins& make_bin,
+             std::size_t rank, std::span<std::uint8_t> bins) {
     std::array<std::uint32_t, kBins> counts{};
-    for (const CentredTriangle& triangle : triangles) ++counts[bins.of(triangle.centroid[axis])];
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        bins[i] = make_bin.of(triangles[i].centroid[axis]);
+        ++counts[bins[i]];
+    }
     std::size_t bin = 0;
     for (; rank >= counts[bin]; ++bin) rank -= counts[bin];
     std::vector<Key> keys;
     keys.reserve(counts[bin]);
-    for (const CentredTriangle& triangle : triangles) {
-        const float coordinate = triangle.centroid[axis];
-        if (bins.of(coordinate) == bin) keys.push_back({coordinate, triangle.index});
+    const auto wanted = static_cast<std::uint8_t>(bin);
+    for (auto at = std::find(bins.begin(), bins.end(), wanted); at != bins.end();
+         at = std::find(at + 1, bins.end(), wanted)) {
+        const CentredTriangle& triangle = triangles[static_cast<std::size_t>(at - bins.begin())];
+        keys.push_back({triangle.centroid[axis], triangle.index});
     }
     const auto nth = keys.begin() + static_cast<std::ptrdiff_t>(rank);
     std::nth_element(keys.begin(), nth, keys.end());
-    return *nth;
+    return {wanted, *nth};
 }
 
 }  // namespace
@@ -63,15 +76,16 @@ void halve(std::span<const CentredTriangle> triangles, std::span<CentredTriangle
                      : extent.y >= extent.z                       ? 1
                                                                   : 2;
     const std::size_t half = triangles.size() / 2;
-    const Key first_high = nth_key(triangles, axis, Bins(low[axis], high[axis]), half);
+    RawVector<std::uint8_t> bins(triangles.size());
+    const Cut cut = find_cut(triangles, axis, Bins(low[axis], high[axis]), half, bins);
 
     // No branch on what no one can predict.
     std::array<CentredTriangle*, 2> next{out.data(), out.data() + half};
-    for (const CentredTriangle& triangle : triangles) {
-        const float coordinate = triangle.centroid[axis];
-        const bool is_high =
-            coordinate > first_high.coordinate ||
-            (coordinate == first_high.coordinate && triangle.index >= first_high.index);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        const CentredTriangle& triangle = triangles[i];
+        bool is_high = bins[i] > cut.bin;
+        if (bins[i] == cut.bin)
+            is_high = Key{triangle.centroid[axis], triangle.index} >= cut.first_high;
         *next[is_high]++ = triangle;
     }
 }

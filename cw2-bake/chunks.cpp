@@ -10,6 +10,7 @@
 
 #include "cw2-bake/chunk_bounds.h"
 #include "cw2-bake/chunk_split.h"
+#include "cw2-bake/raw_vector.h"
 #include "cw2-bake/triangle_order.h"
 
 namespace bake {
@@ -194,7 +195,7 @@ class Assembler {
 /// The triangles by material, each material's in the source's order.
 struct TrianglesByMaterial {
     std::vector<std::size_t> first;  ///< by material, and the end of the last
-    std::vector<CentredTriangle> triangles;
+    RawVector<CentredTriangle> triangles;
 };
 
 TrianglesByMaterial sort_by_material(const FramedScene& framed) {
@@ -235,9 +236,9 @@ std::vector<ChunkedMesh> make_chunks(const FramedScene& scene, std::span<const U
         const auto triangles =
             std::span(sorted.triangles).subspan(first, sorted.first[material + 1] - first);
         const UvLimit limit(budgets[material]);
-        std::vector<std::uint32_t> vertices(3 * triangles.size());
+        RawVector<std::uint32_t> vertices(3 * triangles.size());
         std::vector<std::vector<FinishedChunk>> parts(part_count(triangles.size()));
-        std::vector<CentredTriangle> spare(triangles.size());
+        RawVector<CentredTriangle> spare(triangles.size());
         split(triangles, spare,
               [&](std::size_t part, std::span<CentredTriangle> members, std::size_t begin) {
                   makers.local().make(members, limit, static_cast<std::uint32_t>(3 * begin),

@@ -65,10 +65,16 @@ std::vector<fs::path> input_files(const SourceScene& scene) {
 void refuse_overwriting(const Settings& settings, const std::vector<fs::path>& inputs) {
     std::vector<fs::path> outputs;
     const auto take = [&](const fs::path& output) {
-        const auto is_output = [&](const fs::path& path) { return is_same_file(output, path); };
-        if (std::ranges::any_of(inputs, is_output))
+        // The inputs exist, so no output that does not can be one of them.
+        const auto is_output = [&](const fs::path& path) {
+            std::error_code error;
+            return fs::equivalent(output, path, error);
+        };
+        std::error_code error;
+        if (fs::exists(output, error) && std::ranges::any_of(inputs, is_output))
             throw BakeError(output.string() + ": is an input; the output must be another file");
-        if (std::ranges::any_of(outputs, is_output))
+        if (std::ranges::any_of(outputs,
+                                [&](const fs::path& o) { return is_same_file(output, o); }))
             throw BakeError(output.string() + ": is named for two outputs");
         outputs.push_back(output);
     };

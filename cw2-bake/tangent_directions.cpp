@@ -9,6 +9,8 @@
 #include <iterator>
 #include <numbers>
 
+#include "cw2-bake/every_cpu.h"
+
 namespace bake {
 namespace {
 
@@ -25,7 +27,7 @@ constexpr double kArcSine[] = {0.028346745231833329, 0.0010675063150363118, 0.01
 
 /// acos of x in [-1, 1], rounded to float from an error below 1e-12. Inline, it takes a third of
 /// the library's time.
-float arc_cosine(float x) {
+CW2_INLINE float arc_cosine(float x) {
     constexpr double kPi = std::numbers::pi;
     const double size = std::abs(static_cast<double>(x));
     const bool outer = size > 0.5;  // acos(x) = 2 asin(sqrt((1 - x) / 2)), else pi/2 - asin(x)
@@ -55,7 +57,7 @@ struct Lanes {
 };
 
 /// Projects v onto the plane of the normal n, and normalises what has a length.
-void flatten(Lanes& v, const Lanes& n) {
+CW2_INLINE void flatten(Lanes& v, const Lanes& n) {
     for (std::size_t i = 0; i < kLanes; ++i) {
         const float height = n.x[i] * v.x[i] + n.y[i] * v.y[i] + n.z[i] * v.z[i];
         const float x = v.x[i] - height * n.x[i];
@@ -90,7 +92,7 @@ struct FaceLanes {
         v2[i] = uv2.y;
     }
 
-    void compute() {
+    CW2_INLINE void compute() {
         for (std::size_t i = 0; i < kLanes; ++i) {
             area[i] = u1[i] * v2[i] - v1[i] * u2[i];
             const float size = std::abs(area[i]);
@@ -135,7 +137,7 @@ struct SpokeBatch {
         to_next.set(i, scene.positions[corners[k == 2 ? 0 : k + 1].position] - here);
     }
 
-    void compute() {
+    CW2_INLINE void compute() {
         face.compute();
         flatten(face.s, normal);
         flatten(face.t, normal);
@@ -149,6 +151,14 @@ struct SpokeBatch {
     }
 };
 
+CW2_EVERY_CPU void compute(FaceLanes& faces) {
+    faces.compute();
+}
+
+CW2_EVERY_CPU void compute(SpokeBatch& spokes) {
+    spokes.compute();
+}
+
 }  // namespace
 
 vec3 unit_or_zero(const vec3& v) {
@@ -161,7 +171,7 @@ void make_spokes(const SourceScene& scene, std::span<const std::uint32_t> corner
     for (std::size_t begin = 0; begin < corners.size(); begin += kLanes) {
         const std::size_t count = std::min(kLanes, corners.size() - begin);
         for (std::size_t i = 0; i < count; ++i) batch.load(i, scene, corners[begin + i]);
-        batch.compute();
+        compute(batch);
         for (std::size_t i = 0; i < count; ++i) {
             spokes[begin + i] = {batch.face.s.get(i), batch.face.t.get(i), batch.angle[i],
                                  batch.face.area[i] > 0.0f, batch.face.usable[i] > 0.0f};
@@ -179,7 +189,7 @@ std::vector<std::uint32_t> find_unusable_faces(const SourceScene& scene) {
             const std::size_t count = std::min(kLanes, end - begin);
             for (std::size_t i = 0; i < count; ++i)
                 lanes.load(i, scene, &scene.corners[3 * (begin + i)]);
-            lanes.compute();
+            compute(lanes);
             for (std::size_t i = 0; i < count; ++i)
                 if (lanes.usable[i] == 0.0f)
                     found[block].push_back(static_cast<std::uint32_t>(begin + i));

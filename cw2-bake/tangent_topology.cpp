@@ -52,7 +52,7 @@ CornerLists list_corners(const SourceScene& scene) {
     });
     for (std::size_t task = 0; task < tasks; ++task) totals[task + 1] += totals[task];
     lists.corner.resize(scene.corners.size());
-    std::vector<std::uint32_t> next(position_count);
+    RawVector<std::uint32_t> next(position_count);
     tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
         std::uint32_t start = totals[task];
         for (std::uint32_t p = first_position(task); p < first_position(task + 1); ++p) {

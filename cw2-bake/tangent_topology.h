@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "cw2-bake/raw_vector.h"
 #include "cw2-bake/source_scene.h"
 
 namespace bake {
@@ -23,7 +24,7 @@ inline std::uint32_t previous_corner(std::uint32_t corner) {
 /// corner[first[p]] .. corner[first[p + 1]].
 struct CornerLists {
     std::vector<std::uint32_t> first;
-    std::vector<std::uint32_t> corner;
+    RawVector<std::uint32_t> corner;
 
     std::span<const std::uint32_t> at(std::uint32_t position) const {
         return std::span(corner).subspan(first[position], first[position + 1] - first[position]);

@@ -157,7 +157,7 @@ class SlotTangents {
 /// Appends the framed vertices at the slots' vertices, and tells each corner its own's number.
 void make_vertices(const SourceScene& scene, const CornerSlots& slots,
                    std::span<const vec4> tangents, std::vector<FramedVertex>& vertices,
-                   std::vector<std::uint32_t>& indices) {
+                   std::span<std::uint32_t> indices) {
     vertices.reserve(slots.vertices.size() * 5 / 4);
     for (const VertexSlots& vertex : slots.vertices) {
         const std::size_t first = vertices.size();
@@ -172,9 +172,9 @@ void make_vertices(const SourceScene& scene, const CornerSlots& slots,
 }
 
 /// One after the other in one array; frees each part once it is copied.
-std::vector<FramedVertex> concatenate(std::vector<std::vector<FramedVertex>>& blocks,
-                                      const std::vector<std::uint32_t>& first) {
-    std::vector<FramedVertex> vertices(first.back());
+RawVector<FramedVertex> concatenate(std::vector<std::vector<FramedVertex>>& blocks,
+                                    const std::vector<std::uint32_t>& first) {
+    RawVector<FramedVertex> vertices(first.back());
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
         std::copy(blocks[i].begin(), blocks[i].end(), vertices.begin() + first[i]);
         std::vector<FramedVertex>().swap(blocks[i]);

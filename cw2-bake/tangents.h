@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <glm/vec4.hpp>
-#include <vector>
 
+#include "cw2-bake/raw_vector.h"
 #include "cw2-bake/source_scene.h"
 
 namespace bake {
@@ -19,8 +19,8 @@ struct FramedVertex {
 /// A tangent's xyz has unit length and, where the UVs allow it, is orthogonal to the vertex's
 /// normal; w = +1 or -1, so that the bitangent is w * cross(normal, tangent), along +v (up).
 struct FramedTriangles {
-    std::vector<FramedVertex> vertices;
-    std::vector<std::uint32_t> indices;  ///< one a corner of the scene
+    RawVector<FramedVertex> vertices;
+    RawVector<std::uint32_t> indices;  ///< one a corner of the scene
 };
 
 /// Corners share a vertex where they are equal in position, normal, UV, material and tangent. The
