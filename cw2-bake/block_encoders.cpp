@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "cw2-bake/every_cpu.h"
+#include "mesh-format/every_cpu.h"
 
 namespace bake {
 namespace {

@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 
-#include "cw2-bake/every_cpu.h"
 #include "cw2-bake/mip_chain.h"
 #include "cw2-bake/row_ring.h"
+#include "mesh-format/every_cpu.h"
 
 namespace bake {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "cw2-bake/every_cpu.h"
 #include "cw2-bake/srgb.h"
+#include "mesh-format/every_cpu.h"
 
 namespace bake {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "cw2-bake/every_cpu.h"
+#include "mesh-format/every_cpu.h"
 
 namespace bake {
 namespace {

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "cw2-bake/every_cpu.h"
+#include "mesh-format/every_cpu.h"
 
 namespace bake {
 namespace {

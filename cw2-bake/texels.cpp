@@ -5,9 +5,9 @@
 #include <cmath>
 #include <memory>
 
-#include "cw2-bake/every_cpu.h"
 #include "cw2-bake/row_ring.h"
 #include "cw2-bake/srgb.h"
+#include "mesh-format/every_cpu.h"
 
 namespace bake {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "mesh-format/every_cpu.h"
 #include "mesh-format/tangent_frame.h"
 
 namespace mesh_format {
@@ -25,7 +26,7 @@ struct Rotations {
         }
     }
 
-    void compute() {
+    CW2_INLINE void compute() {
         normalise();
         for (std::size_t i = 0; i < kLanes; ++i)
             if (!has_tangent_[i]) make_tangent(i);
@@ -33,7 +34,7 @@ struct Rotations {
     }
 
  private:
-    void normalise() {
+    CW2_INLINE void normalise() {
         // A sine of 1e-6 is what float vectors of one direction may differ by.
         constexpr double kParallelSquared = 1e-12;
         for (std::size_t i = 0; i < kLanes; ++i) {
@@ -71,7 +72,7 @@ struct Rotations {
     /// Every row of 4 q q^T is a multiple of q; the one with the largest diagonal is the most
     /// precise, and dividing by that diagonal makes the largest component +1, whatever its sign
     /// was.
-    void divide() {
+    CW2_INLINE void divide() {
         for (std::size_t i = 0; i < kLanes; ++i) {
             const double scale = 1 / std::sqrt(squared_[i]);
             const double nx = n[0][i], ny = n[1][i], nz = n[2][i];

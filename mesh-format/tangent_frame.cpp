@@ -8,6 +8,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "mesh-format/every_cpu.h"
 #include "mesh-format/frame_constants.h"
 #include "mesh-format/frame_rotation.h"
 
@@ -63,7 +64,7 @@ TangentFrame frame_of(float x, float y, float z, float w, bool left_handed) {
 using Digits = std::array<std::uint32_t, 3>;
 
 /// atan(x) / (pi / 4) for |x| <= 1, in the shape of tan_quarter_pi; within 2.3e-7.
-float warped(float x) {
+CW2_INLINE float warped(float x) {
     const float y = x * x;
     float p = 0.00438045943f;
     p = p * y - 0.0206893347f;
@@ -75,7 +76,7 @@ float warped(float x) {
     return x * (1.0f + (1.0f - y) * p);
 }
 
-float tan_quarter_pi(float x) {
+CW2_INLINE float tan_quarter_pi(float x) {
     const float y = x * x;
     const float q = ((((kTanQ5 * y + kTanQ4) * y + kTanQ3) * y + kTanQ2) * y + kTanQ1) * y + kTanQ0;
     return x * (1.0f - (1.0f - y) * q);
@@ -102,7 +103,7 @@ struct DigitLanes {
     std::int32_t digits[3][kLanes];
     double degrees[kLanes];
 
-    void compute(int half, float inverse_half) {
+    CW2_INLINE void compute(int half, float inverse_half) {
         rotations.compute();
         for (std::size_t k = 0; k < 3; ++k) {
             for (std::size_t i = 0; i < kLanes; ++i) {
@@ -125,7 +126,7 @@ struct DigitLanes {
  private:
     /// With a and b the quaternions, |a|^2 |b|^2 sin^2(angle / 2) = |a|^2 |b|^2 - (a . b)^2, which
     /// is the sum over pairs of components of (a_i b_j - a_j b_i)^2: of small terms only.
-    void measure() {
+    CW2_INLINE void measure() {
         for (std::size_t i = 0; i < kLanes; ++i) {
             const double a0 = rotations.ratio[0][i], b0 = decoded_[0][i];
             const double a1 = rotations.ratio[1][i], b1 = decoded_[1][i];
@@ -145,6 +146,16 @@ struct DigitLanes {
 
     float decoded_[3][kLanes];
 };
+
+constexpr std::size_t kManyLanes = 16;
+
+void compute(DigitLanes<1>& lanes, int half, float inverse_half) {
+    lanes.compute(half, inverse_half);
+}
+
+CW2_EVERY_CPU void compute(DigitLanes<kManyLanes>& lanes, int half, float inverse_half) {
+    lanes.compute(half, inverse_half);
+}
 
 using Words = std::array<std::uint16_t, 3>;
 
@@ -324,8 +335,8 @@ void pack_digits(FrameForm form, std::span<const TangentFrame> frames, std::byte
     const bool wide = form == FrameForm::quat48;
     DigitLanes<kLanes> lanes;
     for (std::size_t i = 0; i < kLanes; ++i) lanes.rotations.load(i, frames[i]);
-    lanes.compute((wide ? kQuat48DigitMax : kQuat32Base) / 2,
-                  wide ? kQuat48InverseHalf : kQuat32InverseHalf);
+    compute(lanes, (wide ? kQuat48DigitMax : kQuat32Base) / 2,
+            wide ? kQuat48InverseHalf : kQuat32InverseHalf);
     for (std::size_t i = 0; i < kLanes; ++i, out += stride) {
         const auto largest = static_cast<std::uint32_t>(lanes.rotations.largest[i]);
         const bool left_handed = frames[i].handedness < 0;
@@ -362,10 +373,9 @@ void pack_frames(FrameForm form, std::span<const TangentFrame> frames, std::byte
                  std::size_t stride, double* degrees) {
     std::size_t i = 0;
     if (form == FrameForm::quat48 || form == FrameForm::quat32) {
-        constexpr std::size_t kLanes = 16;
-        for (; i + kLanes <= frames.size(); i += kLanes)
-            pack_digits<kLanes>(form, frames.subspan(i, kLanes), out + i * stride, stride,
-                                degrees + i);
+        for (; i + kManyLanes <= frames.size(); i += kManyLanes)
+            pack_digits<kManyLanes>(form, frames.subspan(i, kManyLanes), out + i * stride, stride,
+                                    degrees + i);
     }
     for (; i < frames.size(); ++i) degrees[i] = pack_frame(form, frames[i], out + i * stride);
 }
