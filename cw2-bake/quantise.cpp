@@ -107,6 +107,10 @@ class MeshPacker {
         Errors errors;
         for (; begin < end; begin += kBatch) {
             const std::size_t count = std::min(kBatch, end - begin);
+            // The next batch lies all over the memory: starts to fetch it.
+            const std::size_t behind = std::min(begin + count + kBatch, mesh_.vertices.size());
+            for (std::size_t v = begin + count; v < behind; ++v)
+                __builtin_prefetch(&scene_.framed.vertices[mesh_.vertices[v]]);
             errors.add(pack_batch(std::span(mesh_.vertices).subspan(begin, count), out));
         }
         return errors;

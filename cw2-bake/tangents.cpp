@@ -21,6 +21,7 @@ using glm::vec4;
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 constexpr vec4 kUnreached{1.0f, 0.0f, 0.0f, -1.0f};
 constexpr std::uint32_t kPositionsPerBlock = 1024;
+constexpr std::uint32_t kPositionsAhead = 8;
 
 bool is_unit(const vec3& v) {
     return std::abs(glm::dot(v, v) - 1.0f) < 1e-3f;
@@ -182,6 +183,11 @@ RawVector<FramedVertex> concatenate(std::vector<std::vector<FramedVertex>>& bloc
     return vertices;
 }
 
+/// Starts to fetch what is first asked of the corners' faces: they lie all over the memory.
+void prefetch_faces(const SourceScene& scene, std::span<const std::uint32_t> corners) {
+    for (const std::uint32_t corner : corners) __builtin_prefetch(&scene.corners[corner]);
+}
+
 }  // namespace
 
 FramedTriangles add_tangents(const SourceScene& scene) {
@@ -206,7 +212,10 @@ FramedTriangles add_tangents(const SourceScene& scene) {
         scratch.slots.clear();
         const auto begin = static_cast<std::uint32_t>(block) * kPositionsPerBlock;
         const std::uint32_t end = std::min(begin + kPositionsPerBlock, position_count);
-        for (std::uint32_t p = begin; p < end; ++p) scratch.slot_maker.add(lists.at(p));
+        for (std::uint32_t p = begin; p < end; ++p) {
+            prefetch_faces(scene, lists.at(std::min(p + kPositionsAhead, position_count - 1)));
+            scratch.slot_maker.add(lists.at(p));
+        }
         make_vertices(scene, scratch.slots, scratch.tangents.make(scratch.slots), blocks[block],
                       result.indices);
     });
