@@ -85,7 +85,6 @@ class Session {
 
     void run() {
         while (!ended_ && !window_.closed()) step();
-        presenter_.finish();
     }
 
  private:
@@ -241,6 +240,8 @@ class Session {
         unshown_ = true;
         unsettled_ = kFramesToSettle;
         if (!panel_shown_) return;
+        // The picture may have changed while nobody read its numbers.
+        read_pick();
         // What was clicked while it was hidden was not for it.
         ui_->begin_frame(false);
         ui_->end_frame();
@@ -349,8 +350,8 @@ class Session {
     Layouts layouts_;
     FileWatch watch_;
     std::unique_ptr<Scene> scene_;
-    Presenter presenter_;
     std::optional<UiPass> ui_;  ///< from when the panel is first shown
+    Presenter presenter_;       ///< destroyed before what its frames draw, for which it waits
     Picker picker_;
     ViewerState state_;
     Pointer pointer_;

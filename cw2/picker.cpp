@@ -113,6 +113,9 @@ std::optional<Pick> Picker::pick(const Scene& scene, const FrameSettings& settin
     const VkRect2D area{{static_cast<std::int32_t>(pixel.x), static_cast<std::int32_t>(pixel.y)},
                         {1, 1}};
     FrameSettings read = settings;
+    if (read.split && pixel.x >= read.split->column(extent.width)) {
+        static_cast<Side&>(read) = read.split->right;
+    }
     read.split.reset();
     read.false_color.reset();
     read.exposure = 0.0f;

@@ -44,9 +44,10 @@ class Picker {
     /// `device` and `layouts` must outlive this. Throws VulkanError.
     Picker(const Device& device, const Layouts& layouts, const ShaderCode& code);
 
-    /// Reads the centre of a pixel of the picture that `settings` show in `extent`, a split and
-    /// what is done to values for the eye left out; nothing where it shows the background. Takes
-    /// as long as drawing the little that is there, but for the first time. Throws VulkanError.
+    /// Reads the centre of a pixel of the picture that `settings` show in `extent`, with the maps
+    /// of the side it is on where there is a split, and what is done to values for the eye left
+    /// out; nothing where it shows the background. Takes as long as drawing the little that is
+    /// there, but for the first time. Throws VulkanError.
     std::optional<Pick> pick(const Scene& scene, const FrameSettings& settings, VkExtent2D extent,
                              glm::uvec2 pixel);
 

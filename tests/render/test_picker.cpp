@@ -159,6 +159,30 @@ TEST_F(Picker, LeavesOutWhatIsDoneForTheEye) {
     EXPECT_EQ(a->roughness, b->roughness);
 }
 
+TEST_F(Picker, ReadsTheSideOfASplitThatThePixelIsOn) {
+    const std::filesystem::path scene = stage();
+    const Words camera{"--camera-position", "0.3,1.6,4.3", "--camera-target", "0,0.75,0"};
+    const auto with = [&](const Words& more) {
+        Words words = camera;
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    Reader mapped(scene, camera), flat(scene, with({"--no-normal-map"}));
+    Reader split(scene, with({"--split", "shaded:no-normal-map,shaded", "--divider", "0.5"}));
+    int bumps[2] = {};
+    for (int y = 5; y < kHeight; y += 10) {
+        for (const int x : {10, 40, 70, kWidth / 2 - 1, kWidth / 2, 90, 120, 150}) {
+            const bool is_right = x >= kWidth / 2;
+            const auto a = mapped.pick(x, y), b = flat.pick(x, y), c = split.pick(x, y);
+            if (!a || !b || !c) continue;
+            EXPECT_EQ(c->normal, is_right ? a->normal : b->normal) << x << ' ' << y;
+            bumps[is_right] += a->normal != b->normal;
+        }
+    }
+    EXPECT_GT(bumps[0], 3);
+    EXPECT_GT(bumps[1], 3);
+}
+
 TEST_F(Picker, KnowsPlaceAndMaterial) {
     Reader reader(wall(), {"--camera-position", "0,0,2", "--camera-target", "0,0,0"});
     const float size = 4.0f * std::tan(static_cast<float>(M_PI) / 6.0f) / kHeight;

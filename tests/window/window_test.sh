@@ -373,6 +373,41 @@ check_reads_the_numbers_of_a_pixel() {
     close_window
 }
 
+# The window with its panel; the message in it is the same each time.
+take_panel_picture() {
+    local count
+    count=$(($(wc -l <"$work/out") + 1))
+    press ctrl+c
+    wait_until has_lines "$work/out" $count
+    take_window_picture
+}
+
+check_reads_what_has_changed_while_the_panel_was_hidden() {
+    open_window "$cw2" "$scene" "${large[@]}"
+    take_picture
+    local start=$picture
+    press Tab
+    take_window_picture
+    # The readings of the frame tell times; they are closed.
+    click 600 40
+    wait_until window_picture_differs_from "$picture"
+    click 420 400
+    wait_until grep -q '^pixel 420,400' "$work/out"
+    press Tab
+    xdotool keydown w
+    wait_until picture_differs_from "$start"
+    xdotool keyup w
+    take_picture
+    press Tab
+    take_panel_picture
+    local back=$picture
+    # Something changes, and is as it was.
+    press n n
+    take_panel_picture
+    expect_same "$back" "$picture"
+    close_window
+}
+
 # A copy of the sources, and in `edited` the path of a shader in it.
 copy_sources() {
     mkdir "$work/sources"
