@@ -53,8 +53,12 @@ bool read_value(std::string_view text, FalseColor& value) {
     if (text == "auto") return true;
     const std::size_t comma = text.find(',');
     ValueRange& range = value.range.emplace();
-    return comma != std::string_view::npos && read_value(text.substr(0, comma), range.low) &&
-           read_value(text.substr(comma + 1), range.high) && range.low < range.high;
+    if (comma == std::string_view::npos || !read_value(text.substr(0, comma), range.low) ||
+        !read_value(text.substr(comma + 1), range.high) || range.low >= range.high) {
+        return false;
+    }
+    // What positions are computed with, see false_color.h.
+    return std::isfinite(range.low > 0.0f ? range.high / range.low : range.high - range.low);
 }
 
 constexpr std::string_view kNoNormalMap = ":no-normal-map";

@@ -62,6 +62,15 @@ void require_sense(const Options& options) {
     if (!options.output && (options.stats || options.bench_frames > 0 || options.frames)) {
         throw UsageError("--stats, --bench and --frames need --output");
     }
+    if (options.stats) {
+        for (const std::filesystem::path& other : {options.scene, *options.output}) {
+            std::error_code ignored;
+            if (*options.stats == other ||
+                std::filesystem::equivalent(*options.stats, other, ignored)) {
+                throw UsageError(fmt::format("--stats would replace {}", other.string()));
+            }
+        }
+    }
     if (!options.frames && options.orbit) throw UsageError("--orbit needs --frames");
     if (!options.frames) return;
     if (options.bench_frames > 0) throw UsageError("--bench and --frames exclude each other");
@@ -94,7 +103,11 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
     } catch (const CLI::ParseError& error) {
         throw UsageError(error.what());
     }
-    if (config) apply_config(*config, settings, app, options);
+    if (config) {
+        apply_config(*config, settings, app, options);
+        // A split of the file would hide the view that the command line asks for.
+        if (app.count("--view") > 0 && app.count("--split") == 0) options.split.reset();
+    }
     require_sense(options);
     return options;
 }

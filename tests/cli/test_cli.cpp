@@ -176,6 +176,10 @@ TEST_F(Cli, OutputsThatCannotBeWrittenAreRefused) {
     expect_refusal("cw2", 1,
                    {"scene.cw2mesh", "--output", "existing.png", "--stats", "nowhere/s.json"},
                    {"nowhere/s.json: "});
+    for (const std::string other : {"scene.cw2mesh", "./scene.cw2mesh", "existing.png"}) {
+        expect_refusal("cw2", 2, {"scene.cw2mesh", "--output", "existing.png", "--stats", other},
+                       {"--stats", fs::path(other).filename()});
+    }
     expect_refusal("cw2", 1, {"scene.cw2mesh", "--output", "nowhere/%d.png", "--frames", "3"},
                    {"nowhere/0.png: "});
     fs::create_directory(here("folder.png"));

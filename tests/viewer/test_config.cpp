@@ -76,7 +76,7 @@ class RandomOptions {
         options.list_devices = below(2) == 0;
         options.list_views = below(2) == 0;
         options.validation = below(2) == 0;
-        maybe([&] { options.stats = text(); });
+        maybe([&] { options.stats = text() + ".json"; });
         if (!options.frames) options.bench_frames = below(1000);
         return options;
     }
@@ -106,7 +106,8 @@ class RandomOptions {
     ValueRange range() {
         for (;;) {
             const ValueRange range{number<float, std::uint32_t>(), number<float, std::uint32_t>()};
-            if (range.low < range.high) return range;
+            const float spread = range.low > 0.0f ? range.high / range.low : range.high - range.low;
+            if (range.low < range.high && std::isfinite(spread)) return range;
         }
     }
     std::string text() {
@@ -160,6 +161,16 @@ TEST(Config, TheCommandLineWins) {
     EXPECT_FALSE(options->alpha_mask);
 }
 
+TEST(Config, AViewOfTheCommandLineWinsOverASplit) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "a.toml") << "scene = 'a.cw2mesh'\nview = 'uv'\n"
+                                        "split = ['normal', 'shaded']\n";
+    const auto options = parse({"--config", folder / "a.toml", "--view", "specular"});
+    EXPECT_EQ(options->view, interop::kViewSpecular);
+    EXPECT_EQ(options->split, std::nullopt);
+    EXPECT_TRUE(parse({"--config", folder / "a.toml"})->split.has_value());
+}
+
 TEST(Config, ReadsWhatPeopleWriteInToml) {
     const TemporaryFolder folder;
     std::ofstream(folder / "a.toml", std::ios::binary)
@@ -205,6 +216,9 @@ TEST(Config, WhatMakesNoSenseIsToldWithItsPlace) {
         {"device = \"\\q\"\n", {":1: ", "\\q"}},
         {"device = \"\\uD800\"\n", {":1: ", "U+D800"}},
         {"[camera]\nfov = 60\n", {":1: camera: "}},
+        // Wider than a float can say.
+        {"false-color = [-3e38, 3e38]\n", {":1: false-color: "}},
+        {"false-color = [1e-30, 1e30]\n", {":1: false-color: "}},
     };
     const TemporaryFolder folder;
     const std::string path = folder / "a.toml";
