@@ -16,11 +16,13 @@ namespace {
 using nlohmann::json;
 
 constexpr std::int64_t kLargestCount = std::int64_t{1} << 40;
+constexpr std::int64_t kLargestInt = 0x7FFF'FFFF;
 constexpr int kDeepest = 64;
 
 enum class Kind : std::uint8_t {
     index,    ///< into the top-level array `target`
     count,    ///< 0 .. kLargestCount
+    small,    ///< 0 .. kLargestInt: where tinygltf has an int, and cuts off what does not fit
     number,   ///< finite
     numbers,  ///< an array of `length` numbers
     boolean,
@@ -47,16 +49,16 @@ constexpr bool kRequired = true;
 // appendix "JSON Schema Reference"), and of three extensions.
 constexpr Member kAsset[] = {{"version", Kind::text, kRequired}};
 constexpr Member kSparseIndices[] = {{"bufferView", Kind::index, kRequired, "bufferViews"},
-                                     {"byteOffset", Kind::count},
-                                     {"componentType", Kind::count, kRequired}};
+                                     {"byteOffset", Kind::small},
+                                     {"componentType", Kind::small, kRequired}};
 constexpr Member kSparseValues[] = {{"bufferView", Kind::index, kRequired, "bufferViews"},
-                                    {"byteOffset", Kind::count}};
-constexpr Member kSparse[] = {{"count", Kind::count, kRequired},
+                                    {"byteOffset", Kind::small}};
+constexpr Member kSparse[] = {{"count", Kind::small, kRequired},
                               {"indices", Kind::object, kRequired, {}, 0, kSparseIndices},
                               {"values", Kind::object, kRequired, {}, 0, kSparseValues}};
 constexpr Member kAccessor[] = {{"bufferView", Kind::index, false, "bufferViews"},
                                 {"byteOffset", Kind::count},
-                                {"componentType", Kind::count, kRequired},
+                                {"componentType", Kind::small, kRequired},
                                 {"normalized", Kind::boolean},
                                 {"count", Kind::count, kRequired},
                                 {"type", Kind::text, kRequired},
@@ -69,10 +71,10 @@ constexpr Member kBufferView[] = {{"buffer", Kind::index, kRequired, "buffers"},
 constexpr Member kPrimitive[] = {{"attributes", Kind::lookup, kRequired, "accessors"},
                                  {"indices", Kind::index, false, "accessors"},
                                  {"material", Kind::index, false, "materials"},
-                                 {"mode", Kind::count}};
+                                 {"mode", Kind::small}};
 constexpr Member kMesh[] = {{"name", Kind::text},
                             {"primitives", Kind::objects, kRequired, {}, 0, kPrimitive}};
-constexpr Member kNodeLight[] = {{"light", Kind::count, kRequired}};
+constexpr Member kNodeLight[] = {{"light", Kind::small, kRequired}};
 constexpr Member kNodeExtensions[] = {
     {"KHR_lights_punctual", Kind::object, false, {}, 0, kNodeLight}};
 constexpr Member kNode[] = {{"name", Kind::text},
@@ -87,12 +89,12 @@ constexpr Member kNode[] = {{"name", Kind::text},
 constexpr Member kTransform[] = {{"offset", Kind::numbers, false, {}, 2},
                                  {"rotation", Kind::number},
                                  {"scale", Kind::numbers, false, {}, 2},
-                                 {"texCoord", Kind::count}};
+                                 {"texCoord", Kind::small}};
 constexpr Member kTextureInfoExtensions[] = {
     {"KHR_texture_transform", Kind::object, false, {}, 0, kTransform}};
 constexpr Member kTextureInfo[] = {
     {"index", Kind::index, kRequired, "textures"},
-    {"texCoord", Kind::count},
+    {"texCoord", Kind::small},
     {"scale", Kind::number},
     {"extensions", Kind::object, false, {}, 0, kTextureInfoExtensions}};
 constexpr Member kSurface[] = {
@@ -108,7 +110,7 @@ constexpr Member kMaterial[] = {{"name", Kind::text},
                                 {"alphaCutoff", Kind::number},
                                 {"emissiveFactor", Kind::numbers, false, {}, 3},
                                 {"doubleSided", Kind::boolean}};
-constexpr Member kSampler[] = {{"wrapS", Kind::count}, {"wrapT", Kind::count}};
+constexpr Member kSampler[] = {{"wrapS", Kind::small}, {"wrapT", Kind::small}};
 constexpr Member kWebp[] = {{"source", Kind::index, false, "images"}};
 constexpr Member kTextureExtensions[] = {{"EXT_texture_webp", Kind::object, false, {}, 0, kWebp}};
 constexpr Member kTexture[] = {{"sampler", Kind::index, false, "samplers"},
@@ -178,6 +180,9 @@ class Checker {
                 return check_index(value, member, pointer);
             case Kind::count:
                 if (integer(value, pointer) > kLargestCount) fail(pointer, "is absurdly large");
+                return;
+            case Kind::small:
+                if (integer(value, pointer) > kLargestInt) fail(pointer, "is absurdly large");
                 return;
             case Kind::number:
                 return check_number(value, pointer);
@@ -282,8 +287,27 @@ void check_versions(const json& root, const Checker& checker) {
     }
 }
 
+constexpr std::size_t kNone = ~std::size_t{0};
+
+/// A node that a scene showed twice would show all below it twice, and so on down: a small file
+/// would claim all memory.
+void check_scenes(const json& root, const std::vector<std::size_t>& parents,
+                  const Checker& checker) {
+    const auto scenes = root.find("scenes");
+    for (std::size_t i = 0; scenes != root.end() && i < scenes->size(); ++i) {
+        const json nodes = (*scenes)[i].value("nodes", json::array());
+        std::vector<bool> met(parents.size(), false);
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            const auto node = nodes[k].get<std::size_t>();
+            const std::string pointer = fmt::format("/scenes/{}/nodes/{}", i, k);
+            if (parents[node] != kNone) checker.fail(pointer, "is a child of another node");
+            if (met[node]) checker.fail(pointer, fmt::format("is node {} again", node));
+            met[node] = true;
+        }
+    }
+}
+
 void check_hierarchy(const json& root, const Checker& checker) {
-    constexpr std::size_t kNone = ~std::size_t{0};
     const auto nodes = root.find("nodes");
     if (nodes == root.end()) return;
     std::vector<std::size_t> parents(nodes->size(), kNone);
@@ -310,6 +334,7 @@ void check_hierarchy(const json& root, const Checker& checker) {
         }
         for (node = i; node != kNone && !ends[node]; node = parents[node]) ends[node] = true;
     }
+    check_scenes(root, parents, checker);
 }
 
 /// What tinygltf refuses, or takes for something else, with a message that names no place.

@@ -182,7 +182,11 @@ void GltfPrimitives::add_primitive(const tinygltf::Primitive& primitive, const s
         if (arrays.uvs) {
             uv = material.of.uv_transform.apply({(*arrays.uvs)[2 * i], (*arrays.uvs)[2 * i + 1]});
         }
-        scene_.uvs.push_back(stored(glm::vec2(uv.x, 1.0f - static_cast<float>(uv.y))));
+        const glm::vec2 upward(uv.x, 1.0f - static_cast<float>(uv.y));
+        if (!std::isfinite(upward.x + upward.y))
+            fail_at(file_.path, place,
+                    "its texture's transform takes it out of the range of floats");
+        scene_.uvs.push_back(stored(upward));
         if (arrays.tangents) {
             const glm::vec3 t = stored_direction(linear * Arrays::at3(*arrays.tangents, i, 4));
             const bool usable = glm::length(glm::cross(t, normal)) > 1e-3f;

@@ -118,6 +118,34 @@ const Damage kDamages[] = {
      [](GltfWriter& g) {
          g.root["nodes"][0]["scale"] = {1e300, 1, 1};
      }},
+    {"/scenes/0/nodes/1: is node 0 again",
+     [](GltfWriter& g) {
+         g.root["scenes"][0]["nodes"] = {0, 0};
+     }},
+    {"/scenes/0/nodes/0: is a child of another node",
+     [](GltfWriter& g) {
+         g.root["nodes"] = {{{"mesh", 0}}, {{"children", {0}}}};
+     }},
+    {"/nodes/0/extensions/KHR_lights_punctual/light: is absurdly large",
+     [](GltfWriter& g) {
+         g.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+         g.root["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0xFFFF'FFFF;
+     }},
+    {"/accessors/0/sparse/values/byteOffset: is absurdly large",
+     [](GltfWriter& g) {
+         g.root["accessors"][0]["sparse"] = {
+             {"count", 1},
+             {"indices", {{"bufferView", 0}, {"componentType", kUbyte}}},
+             {"values", {{"bufferView", 0}, {"byteOffset", (std::int64_t{1} << 32) - 12}}}};
+     }},
+    {"/meshes/0/primitives/0: its texture's transform takes it out of the range of floats",
+     [](GltfWriter& g) {
+         g.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {
+             {"index", 0}, {"extensions", {{"KHR_texture_transform", {{"offset", {1e39, 0}}}}}}};
+         g.root["textures"] = {{{"source", 0}}};
+         g.root["images"] = {{{"uri", "a.png"}}};
+         primitive(g)["material"] = 0;
+     }},
     {"/scene: is 4, but there are 1 scenes", [](GltfWriter& g) { g.root["scene"] = 4; }},
     {"/buffers/1: has no contents",
      [](GltfWriter& g) {
