@@ -11,6 +11,7 @@
 
 // After <cstdio>, which it needs.
 #include <jpeglib.h>
+#include <jerror.h>
 
 namespace bake {
 namespace {
@@ -98,9 +99,12 @@ struct JpegReader {
         reader->errors.format_message(common, reader->error.data());
         std::longjmp(reader->exit, 1);
     }
-    /// An image that ends early is a warning to the library.
+    /// An image that ends early is a warning to the library. These harm no texel.
     static void fail_on_warnings(j_common_ptr common, int level) {
-        if (level < 0) fail(common);
+        const int code = common->err->msg_code;
+        const bool harmless = code == JWRN_EXTRANEOUS_DATA || code == JWRN_JFIF_MAJOR ||
+                              code == JWRN_ADOBE_XFORM || code == JWRN_BOGUS_ICC;
+        if (level < 0 && !harmless) fail(common);
     }
 };
 

@@ -1,5 +1,8 @@
 #include "cw2-bake/settings.h"
 
+#include <fmt/format.h>
+
+
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <map>
@@ -92,6 +95,12 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     }
     settings.is_baked = settings.input.extension() == ".cw2mesh";
     if (settings.inspect) return settings;
+    for (const char* option : {"--up", "--tangent-frame", "--positions", "--textures", "--compress",
+                               "--threads", "--stats", "--strict"}) {
+        if (settings.is_baked && app.count(option) > 0) {
+            throw UsageError(fmt::format("{} is not for files that are baked already", option));
+        }
+    }
     if (is_gltf(settings.output)) {
         if (settings.compress) throw UsageError("--compress is for .cw2mesh files");
         // A glTF holds floats and PNGs: they should be as good as the source.

@@ -131,11 +131,19 @@ void check_material(const Checker& check, const Document& document, std::size_t 
     require(std::isfinite(material.normal_scale), "its normal scale is not finite");
     require((material.flags & ~std::uint32_t{kAlphaMask | kCullBack | kFlipBackNormals}) == 0,
             "unknown flags");
+    const auto require_texture = [&](std::uint32_t texture, TextureFormat plain,
+                                     TextureFormat blocks) {
+        if (texture == kNoTexture) return;
+        require(texture < document.textures.size(), "a texture does not exist");
+        const TextureFormat format = document.textures[texture].format;
+        require(format == plain || format == blocks, "a texture's format does not fit its use");
+    };
+    require_texture(material.base_color_texture, TextureFormat::rgba8_srgb,
+                    TextureFormat::bc1_srgb);
+    require_texture(material.normal_texture, TextureFormat::rgba8_unorm, TextureFormat::bc5_unorm);
     for (const std::uint32_t texture :
-         {material.base_color_texture, material.roughness_texture, material.metalness_texture,
-          material.normal_texture, material.alpha_mask_texture}) {
-        require(texture == kNoTexture || texture < document.textures.size(),
-                "a texture does not exist");
+         {material.roughness_texture, material.metalness_texture, material.alpha_mask_texture}) {
+        require_texture(texture, TextureFormat::r8_unorm, TextureFormat::bc4_unorm);
     }
 }
 

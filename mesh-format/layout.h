@@ -172,12 +172,12 @@ struct MaterialRecord {
     float alpha_cutoff;   ///< a fragment whose mask is below this is discarded
     float normal_scale;   ///< multiplies x and y of what the normal texture holds
     std::uint32_t flags;  ///< MaterialFlags
-    /// Indices into the textures section, or kNoTexture.
-    std::uint32_t base_color_texture;
-    std::uint32_t roughness_texture;
-    std::uint32_t metalness_texture;
-    std::uint32_t normal_texture;
-    std::uint32_t alpha_mask_texture;
+    /// Indices into the textures section, or kNoTexture, and the formats that fit.
+    std::uint32_t base_color_texture;  ///< rgba8_srgb, bc1_srgb
+    std::uint32_t roughness_texture;   ///< r8_unorm, bc4_unorm
+    std::uint32_t metalness_texture;   ///< the same
+    std::uint32_t normal_texture;      ///< rgba8_unorm, bc5_unorm
+    std::uint32_t alpha_mask_texture;  ///< r8_unorm, bc4_unorm
 };
 
 /// The blocks are those of the Khronos Data Format Specification 1.3, 4 x 4 texels each. A normal

@@ -116,6 +116,7 @@ TEST_F(Cli, BakeRefusesWrongUsage) {
         {{"scene.obj", "--threads", "0"}, {"--threads", "0"}},
         {{"scene.obj", "--threads", "many"}, {"--threads", "many"}},
         {{"scene.obj", "--json"}, {"--json", "--inspect"}},
+        {{"scene.cw2mesh", "-o", "a.glb", "--stats", "a.json"}, {"--stats", "baked"}},
     };
     for (const auto& [arguments, parts] : table) expect_refusal("cw2-bake", 2, arguments, parts);
 }

@@ -133,6 +133,13 @@ TEST(CommonImages, JpegsGreyAndColouredOfEverySubsampling) {
             OIIO::TypeDesc::UINT8, "jpeg:subsampling", subsampling);
         expect_as_openimageio(folder / "a.jpg");
     }
+    // Bytes before the end that mean nothing, as some cameras write them.
+    std::ifstream file(folder / "a.jpg", std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    ASSERT_TRUE(bytes.ends_with("\xFF\xD9"));
+    bytes.insert(bytes.size() - 2, "\x12\x34\x56");
+    write_bytes(folder / "b.jpg", bytes);
+    expect_as_openimageio(folder / "b.jpg");
     write_image(folder / "g.jpg", 45, 37, 1, [](int x, int y) { return texel(x, y, 1); });
     expect_as_openimageio(folder / "g.jpg");
 }
