@@ -137,7 +137,7 @@ TEST(CommonImages, JpegsGreyAndColouredOfEverySubsampling) {
     std::ifstream file(folder / "a.jpg", std::ios::binary);
     std::string bytes{std::istreambuf_iterator<char>(file), {}};
     ASSERT_TRUE(bytes.ends_with("\xFF\xD9"));
-    bytes.insert(bytes.size() - 2, "\x12\x34\x56");
+    bytes.insert(bytes.size() - 2, 40, '\x12');
     write_bytes(folder / "b.jpg", bytes);
     expect_as_openimageio(folder / "b.jpg");
     write_image(folder / "g.jpg", 45, 37, 1, [](int x, int y) { return texel(x, y, 1); });
