@@ -128,6 +128,9 @@ GltfMaterial GltfMaterials::convert(int index) {
     source.roughness = clamped(surface.roughnessFactor);
     source.metalness = clamped(surface.metallicFactor);
     source.normal_scale = static_cast<float>(material.normalTexture.scale);
+    if (!std::isfinite(source.normal_scale)) {
+        throw BakeError(place + "/normalTexture/scale: is too large");
+    }
     source.cull_back = !material.doubleSided;
     source.flip_back_normals = material.doubleSided && !material.extras.Has("cw2_back_normals");
 

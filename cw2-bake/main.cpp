@@ -9,8 +9,13 @@
 #include "cw2-bake/report.h"
 #include "cw2-bake/settings.h"
 #include "mesh-format/file.h"
+#include "mesh-format/io.h"
 
 namespace {
+
+void tell(const std::string& message) {
+    std::fprintf(stderr, "cw2-bake: %s\n", mesh_format::one_line(message).c_str());
+}
 
 void inspect(const bake::Settings& settings) {
     const mesh_format::MappedFile file(settings.input);
@@ -25,7 +30,7 @@ void run(const bake::Settings& settings) {
     if (settings.inspect) return inspect(settings);
     const auto warn = [&](const std::string& warning) {
         if (settings.strict) throw bake::BakeError(warning);
-        if (!settings.quiet) std::fprintf(stderr, "cw2-bake: warning: %s\n", warning.c_str());
+        if (!settings.quiet) tell("warning: " + warning);
     };
     const std::string summary =
         settings.is_baked ? bake::export_baked(settings) : bake::bake(settings, warn);
@@ -50,10 +55,10 @@ int main(int argc, char** argv) {
         if (settings) run(*settings);
         return 0;
     } catch (const bake::UsageError& error) {
-        std::fprintf(stderr, "cw2-bake: %s\n", error.what());
+        tell(error.what());
         return 2;
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "cw2-bake: %s\n", error.what());
+        tell(error.what());
         return 1;
     }
 }

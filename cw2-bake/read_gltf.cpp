@@ -114,11 +114,11 @@ void take_camera(const GltfFile& file, const std::vector<Placed>& cameras, const
     for (const Placed& placed : cameras) {
         const auto& camera = file.model.cameras[static_cast<std::size_t>(placed.index)];
         const std::string place = fmt::format("{}: /cameras/{}", file.path.string(), placed.index);
-        const double fov = camera.perspective.yfov;
+        const auto fov = static_cast<float>(camera.perspective.yfov);
         const glm::dvec3 position(placed.world_from_node[3]);
         const glm::dvec3 forward(-glm::dvec3(placed.world_from_node[2]));
         const glm::dvec3 up(placed.world_from_node[1]);
-        if (camera.type != "perspective" || !(fov > 0.0 && fov < 3.1) ||
+        if (camera.type != "perspective" || !(fov > 0.0f && fov < 3.1f) ||
             !(glm::length(forward) > 0.0)) {
             warn(place + ": is not in perspective, and left out");
             continue;
@@ -127,8 +127,7 @@ void take_camera(const GltfFile& file, const std::vector<Placed>& cameras, const
         // Far enough that floats tell the two points apart.
         const double distance =
             std::max({glm::length(box.center - position), 0.01 * box.half_diagonal, 1e-3});
-        scene.camera = {glm::vec3(position), glm::vec3(position + distance * sight),
-                        static_cast<float>(fov)};
+        scene.camera = {glm::vec3(position), glm::vec3(position + distance * sight), fov};
         if (!finite(scene.camera->position) || !finite(scene.camera->target) ||
             scene.camera->position == scene.camera->target) {
             scene.camera.reset();

@@ -7,8 +7,13 @@
 #include "cw2/interactive.h"
 #include "cw2/options.h"
 #include "cw2/scene.h"
+#include "mesh-format/io.h"
 
 namespace {
+
+void tell(const char* message) {
+    std::fprintf(stderr, "cw2: %s\n", mesh_format::one_line(message).c_str());
+}
 
 int run(const cw2::Options& options) {
     if (options.list_views) {
@@ -43,10 +48,10 @@ int main(int argc, char** argv) {
         const auto options = cw2::parse_options(argc, argv);
         return options ? run(*options) : 0;
     } catch (const cw2::UsageError& error) {
-        std::fprintf(stderr, "cw2: %s\n", error.what());
+        tell(error.what());
         return 2;
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "cw2: %s\n", error.what());
+        tell(error.what());
         return 1;
     }
 }

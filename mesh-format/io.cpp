@@ -36,6 +36,22 @@ bool replace(const char* from, const char* to) {
 
 }  // namespace
 
+std::string one_line(std::string_view text) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string line;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte == 0x7F) {
+            line += "\\x";
+            line += kDigits[byte / 16];
+            line += kDigits[byte % 16];
+        } else {
+            line += c;
+        }
+    }
+    return line;
+}
+
 MappedFile::MappedFile(const std::filesystem::path& path) {
     // O_NONBLOCK: opening a named pipe must not wait for its writer.
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);

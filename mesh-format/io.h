@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace mesh_format {
 
@@ -12,6 +14,10 @@ namespace mesh_format {
 class FileError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+/// `text` with its control characters as \xNN: names in files may hold line breaks, and a message
+/// is one line.
+std::string one_line(std::string_view text);
 
 /// A file mapped read-only, unmapped when destroyed.
 class MappedFile {

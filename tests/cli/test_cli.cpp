@@ -145,6 +145,8 @@ TEST_F(Cli, BakeRefusesWhatIsNoScene) {
         expect_refusal("cw2-bake", 1, {name, "-o", "new.cw2mesh"}, parts);
     }
     expect_refusal("cw2-bake", 1, {"missing.obj"}, {"missing.obj: ", "No such file"});
+    expect_refusal("cw2-bake", 1, {"two\nlines.obj"}, {"two\\x0alines.obj: "});
+    expect_refusal("cw2", 1, {"two\nlines.cw2mesh"}, {"two\\x0alines.cw2mesh: "});
     expect_refusal("cw2-bake", 1, {"folder"}, {"folder: ", "directory"});
     expect_refusal("cw2-bake", 1, {"/dev/null"}, {"/dev/null: "});
     expect_refusal("cw2-bake", 1, {"scene.cw2mesh", "-o", "existing.cw2mesh"}, {"scene.cw2mesh"});

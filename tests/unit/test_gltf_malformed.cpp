@@ -35,6 +35,13 @@ const Damage kDamages[] = {
      [](GltfWriter& g) {
          g.root["extensionsRequired"] = {"KHR_texture_transform", "KHR_draco_mesh_compression"};
      }},
+    {"/materials/0/normalTexture/scale: is too large",
+     [](GltfWriter& g) {
+         g.root["images"] = {{{"uri", "a.png"}}};
+         g.root["textures"] = {{{"source", 0}}};
+         g.root["materials"] = {{{"normalTexture", {{"index", 0}, {"scale", 1e300}}}}};
+         primitive(g)["material"] = 0;
+     }},
     {"/accessors: is no array", [](GltfWriter& g) { g.root["accessors"] = 3; }},
     {"/accessors/1: is no object", [](GltfWriter& g) { g.root["accessors"][1] = "x"; }},
     {"/accessors/0/count: is no whole number",
