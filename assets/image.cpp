@@ -1,11 +1,12 @@
 #include "assets/image.h"
 
-#include <png.h>
-
-#include <cstdio>
-#include <memory>
-#include <stdexcept>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
+
+#include "mesh-format/encode_png.h"
+#include "mesh-format/io.h"
 
 namespace assets {
 namespace {
@@ -14,22 +15,22 @@ namespace {
 struct Image {
     int size;
     int channels;
-    std::vector<png_byte> bytes;
+    std::vector<std::uint8_t> bytes;
 
     Image(int size_, int channels_)
         : size(size_),
           channels(channels_),
           bytes(static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_ * channels_)) {}
     /// The texel in column x of row y, counted from the bottom.
-    png_byte* at(int x, int y) {
+    std::uint8_t* at(int x, int y) {
         return &bytes[(static_cast<std::size_t>(size - 1 - y) * static_cast<std::size_t>(size) +
                        static_cast<std::size_t>(x)) *
                       static_cast<std::size_t>(channels)];
     }
 };
 
-png_byte to_byte(float value) {
-    return static_cast<png_byte>(saturate(value) * 255.0f + 0.5f);
+std::uint8_t to_byte(float value) {
+    return static_cast<std::uint8_t>(saturate(value) * 255.0f + 0.5f);
 }
 
 /// IEC 61966-2-1.
@@ -37,26 +38,17 @@ float srgb_from_linear(float value) {
     return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
 }
 
-void write_png(const std::filesystem::path& path, Image& image) {
-    const auto close = [](std::FILE* file) { std::fclose(file); };
-    const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "wb"), close);
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-    png_infop info = png_create_info_struct(png);
-    if (!file || !info || setjmp(png_jmpbuf(png))) {
-        png_destroy_write_struct(&png, &info);
-        throw std::runtime_error(path.string() + ": cannot be written");
-    }
-    png_init_io(png, file.get());
-    png_set_compression_level(png, 4);
-    png_set_filter(png, 0, PNG_FILTER_SUB | PNG_FILTER_UP);
-    const auto size = static_cast<png_uint_32>(image.size);
-    png_set_IHDR(png, info, size, size, 8,
-                 image.channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_write_info(png, info);
-    for (int y = image.size - 1; y >= 0; --y) png_write_row(png, image.at(0, y));
-    png_write_end(png, info);
-    png_destroy_write_struct(&png, &info);
+void write_png(const std::filesystem::path& path, const Image& image) {
+    using mesh_format::PngPicture;
+    const auto size = static_cast<std::uint32_t>(image.size);
+    mesh_format::OutputFile file(path);
+    file.write(mesh_format::encode_png(
+        {.width = size,
+         .height = size,
+         .channels = image.channels == 1 ? PngPicture::Channels::grey : PngPicture::Channels::rgb,
+         .says_srgb = false,
+         .texels = std::as_bytes(std::span(image.bytes))}));
+    file.commit();
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <map>
 #include <tuple>
 
-#include "cw2-bake/encode_png.h"
 #include "mesh-format/blocks.h"
+#include "mesh-format/encode_png.h"
 
 namespace bake {
 namespace {
@@ -108,7 +108,13 @@ std::vector<std::byte> encode(const Document& document, TexturePayloads payloads
             if (has_alpha) out[3] = b[0];
         }
     }
-    return encode_png(width, height, channels, texels);
+    using mesh_format::PngPicture;
+    return mesh_format::encode_png(
+        {.width = width,
+         .height = height,
+         .channels = has_alpha ? PngPicture::Channels::rgba : PngPicture::Channels::rgb,
+         .says_srgb = false,
+         .texels = texels});
 }
 
 std::string name_of(const Document& document, const Key& key) {

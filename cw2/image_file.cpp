@@ -5,12 +5,12 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
-#include <png.h>
 
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "mesh-format/encode_png.h"
 #include "mesh-format/io.h"
 
 namespace cw2 {
@@ -18,47 +18,6 @@ namespace cw2 {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-
-void append(Bytes& bytes, const void* data, std::size_t size) {
-    const auto* const first = static_cast<const std::byte*>(data);
-    bytes.insert(bytes.end(), first, first + size);
-}
-
-Bytes encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::byte> pixels) {
-    std::vector<std::byte> row(std::size_t{width} * 3);
-    Bytes bytes;
-    std::string problem;
-    png_structp png = png_create_write_struct(
-        PNG_LIBPNG_VER_STRING, &problem,
-        [](png_structp failed, png_const_charp message) {
-            *static_cast<std::string*>(png_get_error_ptr(failed)) = message;
-            png_longjmp(failed, 1);
-        },
-        nullptr);
-    png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
-    if (info == nullptr || setjmp(png_jmpbuf(png))) {
-        png_destroy_write_struct(&png, &info);
-        throw mesh_format::FileError("PNG encoder: " + problem);
-    }
-    png_set_write_fn(
-        png, &bytes,
-        [](png_structp writer, png_bytep data, png_size_t size) {
-            append(*static_cast<Bytes*>(png_get_io_ptr(writer)), data, size);
-        },
-        nullptr);
-    png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-    png_write_info(png, info);
-    for (std::uint32_t y = 0; y < height; ++y) {
-        const std::byte* const source = pixels.data() + std::size_t{y} * width * 4;
-        for (std::uint32_t x = 0; x < width; ++x) std::memcpy(&row[3 * x], source + 4 * x, 3);
-        png_write_row(png, reinterpret_cast<png_const_bytep>(row.data()));
-    }
-    png_write_end(png, info);
-    png_destroy_write_struct(&png, &info);
-    return bytes;
-}
 
 /// Where OpenEXR writes: memory, because it goes back to fill in its offsets.
 class MemoryStream : public Imf::OStream {
@@ -113,8 +72,14 @@ void write_image(const std::filesystem::path& path, std::uint32_t width, std::ui
                  std::span<const std::byte> pixels) {
     mesh_format::OutputFile file(path);
     try {
-        file.write(image_kind(path) == ImageKind::png ? encode_png(width, height, pixels)
-                                                      : encode_exr(width, height, pixels));
+        using mesh_format::PngPicture;
+        file.write(image_kind(path) == ImageKind::png
+                       ? mesh_format::encode_png({.width = width,
+                                                  .height = height,
+                                                  .channels = PngPicture::Channels::rgb_of_rgba,
+                                                  .says_srgb = true,
+                                                  .texels = pixels})
+                       : encode_exr(width, height, pixels));
     } catch (const mesh_format::FileError&) {
         throw;
     } catch (const std::exception& error) {

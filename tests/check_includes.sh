@@ -9,17 +9,17 @@ set -f
 rules='
 mesh-format/*           | mesh-format/*
 mesh-format/decode.cpp  | meshoptimizer.h zstd.h fmt/* tbb/*
+mesh-format/encode_png.* | png.h
 cw2-bake/*              | mesh-format/* cw2-bake/* glm/* fmt/* tbb/* CLI/*
 cw2-bake/*              | meshoptimizer.h zstd.h xxhash.h
 cw2-bake/read_*.cpp     | fast_float/*
 cw2-bake/gltf_*         | tiny_gltf.h nlohmann/json.hpp
 cw2-bake/write_gltf.*   | nlohmann/json.hpp
-cw2-bake/encode_png.*   | png.h
 cw2-bake/read_common_*  | png.h jpeglib.h jerror.h
 cw2-bake/obj_parser.cpp | fast_float/*
 cw2-bake/image_reader.* | OpenImageIO/*
 cw2/*                   | mesh-format/* cw2/* shaders/interop.h shaders/false_color.h *.vert.h *.frag.h glm/* fmt/*
-cw2/*                   | tbb/* CLI/* vulkan/* glslang/* SPIRV/* png.h Imf*.h
+cw2/*                   | tbb/* CLI/* vulkan/* glslang/* SPIRV/* Imf*.h
 cw2/config.cpp          | toml++/toml.h
 cw2/window*             | GLFW/*
 cw2/ui_pass.cpp         | imgui.h backends/imgui_impl_*
