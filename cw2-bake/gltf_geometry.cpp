@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
@@ -28,52 +28,40 @@ struct Vertices {
     std::vector<glm::vec2> uvs;
 };
 
-template <typename T, std::size_t N>
-void load(const std::byte* from, T (&to)[N]) {
-    std::memcpy(to, from, sizeof to);
-}
-
-glm::vec3 position_of(const Document& document, const MeshRecord& mesh, const std::byte* vertex) {
-    glm::vec3 position;
-    if (mesh.position_form == PositionForm::f32) {
-        std::memcpy(&position, vertex, sizeof position);
-        return position;
+/// A vector as the vertices hold it: floats, or words q that stand for origin + step * q.
+template <int N>
+glm::vec<N, float> vector_of(const std::byte* bytes, bool words, const glm::vec<N, float>& origin,
+                             const glm::vec<N, float>& step) {
+    if (!words) {
+        glm::vec<N, float> vector;
+        std::memcpy(&vector, bytes, sizeof vector);
+        return vector;
     }
-    std::uint16_t q[3];
-    load(vertex, q);
-    for (int axis = 0; axis < 3; ++axis)
-        position[axis] =
-            document.scene.position_step * static_cast<float>(mesh.origin[axis] + q[axis]);
-    return position;
-}
-
-glm::vec2 uv_of(const MeshRecord& mesh, const std::byte* bytes) {
-    glm::vec2 uv;
-    if (mesh.uv_form == UvForm::f32) {
-        std::memcpy(&uv, bytes, sizeof uv);
-        return uv;
-    }
-    std::uint16_t q[2];
-    load(bytes, q);
-    for (int axis = 0; axis < 2; ++axis)
-        uv[axis] = mesh.uv_origin[axis] + mesh.uv_step[axis] * static_cast<float>(q[axis]);
-    return uv;
+    glm::vec<N, std::uint16_t> q;
+    std::memcpy(&q, bytes, sizeof q);
+    return origin + step * glm::vec<N, float>(q);
 }
 
 Vertices vertices_of(const Document& document, const MeshRecord& mesh) {
     const mesh_format::VertexLayout layout =
         mesh_format::vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+    // Exact: the step is a power of two, and origins and words fit a float's 24 bits.
+    const glm::vec3 step(document.scene.position_step);
+    const glm::vec3 origin = step * glm::vec3(glm::make_vec3(mesh.origin));
     Vertices vertices;
     for (std::uint32_t i = 0; i < mesh.vertex_count; ++i) {
         const std::byte* vertex =
             document.vertices.data() + mesh.vertex_offset + std::size_t{i} * layout.stride;
         const mesh_format::TangentFrame frame =
             mesh_format::unpack_frame(mesh.frame_form, vertex + layout.frame_offset);
-        vertices.positions.push_back(position_of(document, mesh, vertex));
+        vertices.positions.push_back(
+            vector_of<3>(vertex, mesh.position_form == PositionForm::quantised, origin, step));
         vertices.normals.emplace_back(frame.normal[0], frame.normal[1], frame.normal[2]);
         vertices.tangents.emplace_back(frame.tangent[0], frame.tangent[1], frame.tangent[2],
                                        frame.handedness);
-        vertices.uvs.push_back(uv_of(mesh, vertex + layout.uv_offset));
+        vertices.uvs.push_back(
+            vector_of<2>(vertex + layout.uv_offset, mesh.uv_form == UvForm::quantised,
+                         glm::make_vec2(mesh.uv_origin), glm::make_vec2(mesh.uv_step)));
     }
     return vertices;
 }

@@ -95,7 +95,7 @@ class Session {
         extent_ = window_.extent();
         if (panel_shown_) run_panel(input);
         follow_the_mouse(input);
-        for (const Command& command : input.commands) obey(command);
+        for (const Command& command : input.commands) obey(command, input);
         const Clock::time_point now = Clock::now();
         const double seconds = std::chrono::duration<double>(now - last_step_).count();
         last_step_ = now;
@@ -120,10 +120,10 @@ class Session {
 
     /// Shows the panel, lets it change the state, and takes out of `input` what was for it.
     void run_panel(Input& input) {
-        ui_->begin_frame(!pointer_.turns() && !pointer_.drags());
-        std::erase_if(input.mouse_actions, [&](const MouseAction& action) {
-            return action.pressed && ui_->wants_mouse();
-        });
+        ui_->begin_frame(input, !pointer_.turns() && !pointer_.drags());
+        if (input.mouse_action && input.mouse_action->pressed && ui_->wants_mouse()) {
+            input.mouse_action.reset();
+        }
         const bool has_focus = ui_->wants_keys();
         if (has_focus) input.direction = {};
         if (ui_->wants_text()) input.commands.clear();
@@ -166,7 +166,7 @@ class Session {
             .divider = options.split ? std::optional(options.divider) : std::nullopt,
             .scale = window_.content_scale()};
         const bool turned = pointer_.turns();
-        const Pointer::Wishes wishes = pointer_.follow(input.mouse_actions, input.cursor, picture);
+        const Pointer::Wishes wishes = pointer_.follow(input.mouse_action, input.cursor, picture);
         if (pointer_.turns() && !turned && panel_shown_) ui_->drop_focus();
         window_.hide_cursor(pointer_.turns());
         if (wishes.divider && *wishes.divider != options.divider) {
@@ -196,10 +196,11 @@ class Session {
         pick_ = picker_.pick(*scene_, state_.settings(), extent_, *picked_);
     }
 
-    void obey(const Command& command) {
+    /// `input` is what the command came with.
+    void obey(const Command& command, const Input& input) {
         switch (command.kind) {
             case CommandKind::toggle_panel:
-                toggle_panel();
+                toggle_panel(input);
                 break;
             case CommandKind::reload_shaders:
                 reload_shaders();
@@ -231,7 +232,7 @@ class Session {
         }
     }
 
-    void toggle_panel() {
+    void toggle_panel(const Input& input) {
         if (!ui_) {
             ui_.emplace(window_.handle(), instance_, device_, presenter_.format(),
                         Presenter::kSlots, window_.content_scale());
@@ -243,10 +244,10 @@ class Session {
         // The picture may have changed while nobody read its numbers.
         read_pick();
         // What was clicked while it was hidden was not for it.
-        ui_->begin_frame(false);
+        ui_->begin_frame(input, false);
         ui_->end_frame();
         // So that the next frame to be drawn has something to draw.
-        Input nothing;
+        Input nothing{.buttons = input.buttons, .cursor = input.cursor};
         run_panel(nothing);
     }
 

@@ -19,30 +19,24 @@ bool Pointer::at_divider(glm::vec2 cursor, const Picture& picture) {
            std::abs(cursor.x - *picture.divider * picture.width) <= kReach * picture.scale;
 }
 
-Pointer::Wishes Pointer::follow(std::span<const MouseAction> actions, glm::vec2 cursor,
+Pointer::Wishes Pointer::follow(const std::optional<MouseAction>& action, glm::vec2 cursor,
                                 const Picture& picture) {
     Wishes wishes;
-    const auto drag_to = [&](glm::vec2 where) {
-        if (drags_) wishes.divider = std::clamp(where.x / picture.width, 0.0f, 1.0f);
-    };
-    for (const MouseAction& action : actions) {
-        if (action.button == MouseButton::right) {
-            turns_ = action.pressed;
-            pressed_.reset();
-        } else if (action.pressed) {
-            drags_ = at_divider(action.cursor, picture);
-            if (!drags_ && !turns_) pressed_ = action.cursor;
-        } else {
-            drag_to(action.cursor);
-            drags_ = false;
-            if (pressed_ &&
-                glm::distance(*pressed_, action.cursor) <= kSteadyHand * picture.scale) {
-                wishes.clicked = pressed_;
-            }
-            pressed_.reset();
-        }
+    if (action && action->button == MouseButton::right) {
+        turns_ = action->pressed;
+        pressed_.reset();
+    } else if (action && action->pressed) {
+        drags_ = at_divider(cursor, picture);
+        if (!drags_ && !turns_) pressed_ = cursor;
     }
-    drag_to(cursor);
+    if (drags_) wishes.divider = std::clamp(cursor.x / picture.width, 0.0f, 1.0f);
+    if (action && action->button == MouseButton::left && !action->pressed) {
+        drags_ = false;
+        if (pressed_ && glm::distance(*pressed_, cursor) <= kSteadyHand * picture.scale) {
+            wishes.clicked = pressed_;
+        }
+        pressed_.reset();
+    }
     return wishes;
 }
 

@@ -3,7 +3,6 @@
 
 #include <glm/vec2.hpp>
 #include <optional>
-#include <span>
 
 #include "cw2/input.h"
 
@@ -21,9 +20,9 @@ class Pointer {
         std::optional<float> divider;      ///< where it is dragged to
     };
 
-    /// What the buttons did since the last call, and the cursor now does, where both are the
-    /// picture's.
-    Wishes follow(std::span<const MouseAction> actions, glm::vec2 cursor, const Picture& picture);
+    /// What a button did at last, and where the cursor was then, where both are the picture's.
+    Wishes follow(const std::optional<MouseAction>& action, glm::vec2 cursor,
+                  const Picture& picture);
 
     bool turns() const { return turns_; }
     bool drags() const { return drags_; }

@@ -141,11 +141,17 @@ void UiPass::upload_font() const {
     ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
 
-void UiPass::begin_frame(bool has_mouse) {
+void UiPass::begin_frame(const Input& input, bool has_mouse) {
     ImGuiIO& io = ImGui::GetIO();
     io.ConfigFlags = has_mouse ? ImGuiConfigFlags_None : ImGuiConfigFlags_NoMouse;
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    // The backend mixes presses since the last frame with where the cursor went afterwards.
+    std::ranges::copy(input.buttons, io.MouseDown);
+    if (ImGui::IsMousePosValid()) {
+        io.MousePos = {input.cursor.x / io.DisplayFramebufferScale.x,
+                       input.cursor.y / io.DisplayFramebufferScale.y};
+    }
     ImGui::NewFrame();
 }
 

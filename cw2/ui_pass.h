@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cw2/device.h"
+#include "cw2/input.h"
 #include "cw2/vk_handle.h"
 
 struct GLFWwindow;
@@ -26,8 +27,9 @@ class UiPass {
     UiPass(const UiPass&) = delete;
     UiPass& operator=(const UiPass&) = delete;
 
-    /// `has_mouse`: false while the mouse does something else.
-    void begin_frame(bool has_mouse);
+    /// Of `input` it takes what the mouse does; keys and text it gets by itself. `has_mouse`: false
+    /// while the mouse does something else.
+    void begin_frame(const Input& input, bool has_mouse);
     void end_frame();
 
     // From begin_frame() on: whom the user's actions are for.

@@ -143,14 +143,22 @@ bool Window::held(int key) const {
     return glfwGetKey(handle_, key) == GLFW_PRESS;
 }
 
+/// What follows belongs to another input.
+void Window::end_input() {
+    Input& input = inputs_.back();
+    input.cursor = in_pixels(cursor_);
+    inputs_.emplace_back().buttons = input.buttons;
+}
+
 Input Window::poll(double seconds) {
-    if (seconds > 0.0) {
+    if (seconds > 0.0 && inputs_.size() == 1) {
         glfwWaitEventsTimeout(seconds);
     } else {
         glfwPollEvents();
     }
-    Input input = std::exchange(input_, {});
-    input.cursor = in_pixels(cursor_);
+    if (inputs_.size() == 1) end_input();
+    Input input = std::move(inputs_.front());
+    inputs_.pop_front();
     const auto axis = [this](int positive, int negative) {
         // Both are asked, because asking is what lets go of a sticky key.
         const bool forth = held(positive);
@@ -196,39 +204,45 @@ Window& Window::of(GLFWwindow* handle) {
 }
 
 void Window::on_key(GLFWwindow* handle, int key, int, int action, int modifiers) {
-    Input& input = of(handle).input_;
+    Input& input = of(handle).inputs_.back();
     input.anything = true;
     if (action != GLFW_PRESS) return;
     if (const auto command = command_of(key, modifiers)) input.commands.push_back(*command);
 }
 
 void Window::on_character(GLFWwindow* handle, unsigned int) {
-    of(handle).input_.anything = true;
+    of(handle).inputs_.back().anything = true;
 }
 
 void Window::on_scroll(GLFWwindow* handle, double, double) {
-    of(handle).input_.anything = true;
+    of(handle).inputs_.back().anything = true;
 }
 
 void Window::on_button(GLFWwindow* handle, int button, int action, int) {
     Window& window = of(handle);
-    window.input_.anything = true;
+    window.inputs_.back().anything = true;
     if (button != GLFW_MOUSE_BUTTON_LEFT && button != GLFW_MOUSE_BUTTON_RIGHT) return;
-    window.input_.mouse_actions.push_back(
-        {.button = button == GLFW_MOUSE_BUTTON_LEFT ? MouseButton::left : MouseButton::right,
-         .pressed = action == GLFW_PRESS,
-         .cursor = window.in_pixels(window.cursor_)});
+    const bool left = button == GLFW_MOUSE_BUTTON_LEFT;
+    const bool pressed = action == GLFW_PRESS;
+    // A hidden cursor points at nothing.
+    if (left && pressed && window.cursor_hidden_) return;
+    if (!window.inputs_.back().commands.empty()) window.end_input();
+    Input& input = window.inputs_.back();
+    input.mouse_action = {left ? MouseButton::left : MouseButton::right, pressed};
+    input.buttons[left ? 0 : 1] = pressed;
+    window.end_input();
 }
 
 void Window::on_cursor(GLFWwindow* handle, double x, double y) {
     Window& window = of(handle);
-    window.input_.anything = true;
-    if (window.cursor_hidden_) window.input_.drag += glm::vec2(glm::dvec2(x, y) - window.cursor_);
+    Input& input = window.inputs_.back();
+    input.anything = true;
+    if (window.cursor_hidden_) input.drag += glm::vec2(glm::dvec2(x, y) - window.cursor_);
     window.cursor_ = {x, y};
 }
 
 void Window::on_refresh(GLFWwindow* handle) {
-    of(handle).input_.exposed = true;
+    of(handle).inputs_.back().exposed = true;
 }
 
 }  // namespace cw2

@@ -4,6 +4,7 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <deque>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -45,7 +46,7 @@ class Window {
     /// Whether the user has closed it.
     bool closed() const;
 
-    /// Gives what the user did since the last call; waits up to `seconds` for an event.
+    /// Gives what the user did next; waits up to `seconds` for an event if there was none.
     Input poll(double seconds);
     /// Hides the cursor, so that it never meets the screen's edge, and measures how it is dragged;
     /// or shows it again.
@@ -75,11 +76,12 @@ class Window {
     static void on_scroll(GLFWwindow* handle, double x, double y);
     static void on_refresh(GLFWwindow* handle);
     bool held(int key) const;
+    void end_input();
     glm::vec2 in_pixels(const glm::dvec2& cursor) const;
 
     Library library_;
     GLFWwindow* handle_ = nullptr;
-    Input input_;  ///< collected by the callbacks
+    std::deque<Input> inputs_{1};  ///< collected by the callbacks; the last one is not at its end
     bool cursor_hidden_ = false;
     glm::dvec2 cursor_{0.0};  ///< screen units, as of the latest event
 };

@@ -20,9 +20,7 @@ open_window "$cw2" "$scene" --size 1200x760 --samples 4 --light-position 4,7,5 \
 press Tab
 take_picture shift+F12
 # On the lion's mane.
-xdotool mousemove --window "$window" 590 360 mousedown 1
-sleep 0.2
-xdotool mouseup 1
+click 590 360
 wait_until has_lines "$work/out" 2
 take_picture shift+F12
 cp "$picture" "$docs/panel.png"

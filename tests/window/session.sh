@@ -91,14 +91,31 @@ has_lines() {
     [[ $(wc -l <"$1") -ge $2 ]]
 }
 
-# Presses F12, or another key; `picture` is then the path of what the window showed.
-take_picture() {
+# Presses a key on which cw2 prints a line; `line` is then that line.
+press_for_line() {
     local count
     count=$(($(wc -l <"$work/out") + 1))
-    press "${1:-F12}"
+    press "$1"
     wait_until has_lines "$work/out" $count
-    picture=$work/shots/$(tail -n 1 "$work/out")
-    [[ -f $picture ]] || fail "$picture was announced and is not there"
+    line=$(tail -n 1 "$work/out")
+}
+
+# The same with a key that saves a file; gives its path by the name $1.
+press_for_file() {
+    press_for_line "$2"
+    local -n path=$1
+    path=$work/shots/$line
+    [[ -f $path ]] || fail "$path was announced and is not there"
+}
+
+# Presses F12, or another key; `picture` is then the path of what the window showed.
+take_picture() {
+    press_for_file picture "${1:-F12}"
+}
+
+# Presses and lets go a mouse button at X Y.
+click() {
+    xdotool mousemove --window "$window" "$1" "$2" mousedown "${3:-1}" mouseup "${3:-1}"
 }
 
 title_has() {

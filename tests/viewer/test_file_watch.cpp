@@ -1,0 +1,47 @@
+// When a file counts as changed.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "cw2/file_watch.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+class FileWatch : public testing::Test {
+ protected:
+    FileWatch() { write("as it was"); }
+
+    void write(const std::string& text) const { std::ofstream(path_) << text; }
+
+    TemporaryFolder folder_;
+    std::filesystem::path path_ = folder_ / "scene.cw2mesh";
+};
+
+TEST_F(FileWatch, AFileThatStaysHasNotChanged) {
+    cw2::FileWatch watch(path_);
+    for (int look = 0; look < 3; ++look) EXPECT_FALSE(watch.changed());
+}
+
+TEST_F(FileWatch, AChangeIsToldOnceAndOnlyWhenItHasComeToRest) {
+    cw2::FileWatch watch(path_);
+    write("half of");
+    EXPECT_FALSE(watch.changed());
+    write("half of another");
+    EXPECT_FALSE(watch.changed());
+    EXPECT_TRUE(watch.changed());
+    EXPECT_FALSE(watch.changed());
+}
+
+TEST_F(FileWatch, AFileThatIsGoneHasNotChangedUntilAnotherIsThere) {
+    cw2::FileWatch watch(path_);
+    std::filesystem::remove(path_);
+    for (int look = 0; look < 3; ++look) EXPECT_FALSE(watch.changed());
+    write("quite another");
+    EXPECT_FALSE(watch.changed());
+    EXPECT_TRUE(watch.changed());
+}
+
+}  // namespace
