@@ -40,24 +40,8 @@ CW2_INLINE float arc_cosine(float x) {
     return static_cast<float>(x < 0.0f ? kPi - of_size : of_size);
 }
 
-/// Spokes are made kLanes at a time, in loops that compilers turn into vector instructions.
-constexpr std::size_t kLanes = 16;
-
-struct Lanes {
-    float x[kLanes];
-    float y[kLanes];
-    float z[kLanes];
-
-    void set(std::size_t i, const vec3& v) {
-        x[i] = v.x;
-        y[i] = v.y;
-        z[i] = v.z;
-    }
-    vec3 get(std::size_t i) const { return {x[i], y[i], z[i]}; }
-};
-
 /// Projects v onto the plane of the normal n, and normalises what has a length.
-CW2_INLINE void flatten(Lanes& v, const Lanes& n) {
+CW2_INLINE void flatten(const Lanes& v, const Lanes& n, Lanes& result) {
     for (std::size_t i = 0; i < kLanes; ++i) {
         const float height = n.x[i] * v.x[i] + n.y[i] * v.y[i] + n.z[i] * v.z[i];
         const float x = v.x[i] - height * n.x[i];
@@ -65,44 +49,48 @@ CW2_INLINE void flatten(Lanes& v, const Lanes& n) {
         const float z = v.z[i] - height * n.z[i];
         const float squared = x * x + y * y + z * z;
         const float scale = 1.0f / std::sqrt(squared > 0.0f ? squared : 1.0f);
-        v.x[i] = x * scale;
-        v.y[i] = y * scale;
-        v.z[i] = z * scale;
+        result.x[i] = x * scale;
+        result.y[i] = y * scale;
+        result.z[i] = z * scale;
     }
 }
 
 /// The directions of growing u and v, by face.
 struct FaceLanes {
-    Lanes edge1, edge2;  ///< from corner 0 to corners 1 and 2
-    float u1[kLanes], v1[kLanes], u2[kLanes], v2[kLanes];
-    Lanes s, t;  ///< in unit length, as far as the UVs allow
-    float area[kLanes];
-    float usable[kLanes];  ///< 1 or 0
+    Lanes position[3];
+    float u[3][kLanes], v[3][kLanes];
+    Lanes s, t;                        ///< in unit length, as far as the UVs allow
+    std::uint32_t preserving[kLanes];  ///< 1 or 0
+    std::uint32_t usable[kLanes];      ///< 1 or 0
 
     void load(std::size_t i, const SourceScene& scene, const Corner* face) {
-        const vec3& p0 = scene.positions[face[0].position];
-        edge1.set(i, scene.positions[face[1].position] - p0);
-        edge2.set(i, scene.positions[face[2].position] - p0);
-        const vec2& uv0 = scene.uvs[face[0].uv];
-        const vec2 uv1 = scene.uvs[face[1].uv] - uv0;
-        const vec2 uv2 = scene.uvs[face[2].uv] - uv0;
-        u1[i] = uv1.x;
-        v1[i] = uv1.y;
-        u2[i] = uv2.x;
-        v2[i] = uv2.y;
+        for (std::size_t k = 0; k < 3; ++k) {
+            position[k].set(i, scene.positions[face[k].position]);
+            const vec2& uv = scene.uvs[face[k].uv];
+            u[k][i] = uv.x;
+            v[k][i] = uv.y;
+        }
     }
 
     CW2_INLINE void compute() {
         for (std::size_t i = 0; i < kLanes; ++i) {
-            area[i] = u1[i] * v2[i] - v1[i] * u2[i];
-            const float size = std::abs(area[i]);
-            const float sign = area[i] > 0.0f ? 1.0f : -1.0f;
-            const float sx = v2[i] * edge1.x[i] - v1[i] * edge2.x[i];
-            const float sy = v2[i] * edge1.y[i] - v1[i] * edge2.y[i];
-            const float sz = v2[i] * edge1.z[i] - v1[i] * edge2.z[i];
-            const float tx = -u2[i] * edge1.x[i] + u1[i] * edge2.x[i];
-            const float ty = -u2[i] * edge1.y[i] + u1[i] * edge2.y[i];
-            const float tz = -u2[i] * edge1.z[i] + u1[i] * edge2.z[i];
+            const float u1 = u[1][i] - u[0][i], v1 = v[1][i] - v[0][i];
+            const float u2 = u[2][i] - u[0][i], v2 = v[2][i] - v[0][i];
+            const float x1 = position[1].x[i] - position[0].x[i];
+            const float y1 = position[1].y[i] - position[0].y[i];
+            const float z1 = position[1].z[i] - position[0].z[i];
+            const float x2 = position[2].x[i] - position[0].x[i];
+            const float y2 = position[2].y[i] - position[0].y[i];
+            const float z2 = position[2].z[i] - position[0].z[i];
+            const float area = u1 * v2 - v1 * u2;
+            const float size = std::abs(area);
+            const float sign = area > 0.0f ? 1.0f : -1.0f;
+            const float sx = v2 * x1 - v1 * x2;
+            const float sy = v2 * y1 - v1 * y2;
+            const float sz = v2 * z1 - v1 * z2;
+            const float tx = -u2 * x1 + u1 * x2;
+            const float ty = -u2 * y1 + u1 * y2;
+            const float tz = -u2 * z1 + u1 * z2;
             const float length_s = std::sqrt(sx * sx + sy * sy + sz * sz);
             const float length_t = std::sqrt(tx * tx + ty * ty + tz * tz);
             const bool has_area = size > FLT_MIN;
@@ -115,38 +103,57 @@ struct FaceLanes {
             t.y[i] = scale_t * ty;
             t.z[i] = scale_t * tz;
             const bool spans = has_area && length_s / size > FLT_MIN && length_t / size > FLT_MIN;
-            usable[i] = spans ? 1.0f : 0.0f;
+            usable[i] = spans ? 1 : 0;
+            preserving[i] = area > 0.0f ? 1 : 0;
         }
     }
 };
 
-struct SpokeBatch {
+/// What spokes are made of.
+struct CornerLanes {
     FaceLanes face;
+    std::uint32_t corner[kLanes];  ///< 0, 1 or 2: of the face's
     Lanes normal;
     Lanes to_previous;
     Lanes to_next;
-    float angle[kLanes];
 
-    void load(std::size_t i, const SourceScene& scene, std::uint32_t corner) {
-        const Corner* corners = &scene.corners[corner - corner % 3];
-        face.load(i, scene, corners);
-        const std::uint32_t k = corner % 3;
-        const vec3& here = scene.positions[corners[k].position];
-        normal.set(i, scene.normals[corners[k].normal]);
-        to_previous.set(i, scene.positions[corners[k == 0 ? 2 : k - 1].position] - here);
-        to_next.set(i, scene.positions[corners[k == 2 ? 0 : k + 1].position] - here);
+    void load(std::size_t i, const SourceScene& scene, const Slot& slot) {
+        face.load(i, scene, &scene.corners[3 * std::size_t{slot.face}]);
+        corner[i] = slot.corner - 3 * slot.face;
+        normal.set(i, scene.normals[slot.own.normal]);
     }
 
-    CW2_INLINE void compute() {
+    /// Of one axis, from the face's corners.
+    CW2_INLINE void compute_edges(const float* p0, const float* p1, const float* p2,
+                                  float* previous, float* next) {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const bool is_0 = corner[i] == 0;
+            const bool is_1 = corner[i] == 1;
+            const float here = is_0 ? p0[i] : is_1 ? p1[i] : p2[i];
+            previous[i] = (is_0 ? p2[i] : is_1 ? p0[i] : p1[i]) - here;
+            next[i] = (is_0 ? p1[i] : is_1 ? p2[i] : p0[i]) - here;
+        }
+    }
+
+    CW2_INLINE void compute(SpokeLanes& spokes) {
         face.compute();
-        flatten(face.s, normal);
-        flatten(face.t, normal);
-        flatten(to_previous, normal);
-        flatten(to_next, normal);
+        const Lanes* p = face.position;
+        compute_edges(p[0].x, p[1].x, p[2].x, to_previous.x, to_next.x);
+        compute_edges(p[0].y, p[1].y, p[2].y, to_previous.y, to_next.y);
+        compute_edges(p[0].z, p[1].z, p[2].z, to_previous.z, to_next.z);
+        flatten(face.s, normal, spokes.s);
+        flatten(face.t, normal, spokes.t);
+        flatten(to_previous, normal, to_previous);
+        flatten(to_next, normal, to_next);
         for (std::size_t i = 0; i < kLanes; ++i) {
             const float cosine = to_previous.x[i] * to_next.x[i] + to_previous.y[i] * to_next.y[i] +
                                  to_previous.z[i] * to_next.z[i];
-            angle[i] = arc_cosine(cosine > 1.0f ? 1.0f : cosine < -1.0f ? -1.0f : cosine);
+            const float angle = arc_cosine(cosine > 1.0f ? 1.0f : cosine < -1.0f ? -1.0f : cosine);
+            spokes.weighted_s.x[i] = angle * spokes.s.x[i];
+            spokes.weighted_s.y[i] = angle * spokes.s.y[i];
+            spokes.weighted_s.z[i] = angle * spokes.s.z[i];
+            spokes.preserving[i] = face.preserving[i];
+            spokes.usable[i] = face.usable[i];
         }
     }
 };
@@ -155,8 +162,8 @@ CW2_EVERY_CPU void compute(FaceLanes& faces) {
     faces.compute();
 }
 
-CW2_EVERY_CPU void compute(SpokeBatch& spokes) {
-    spokes.compute();
+CW2_EVERY_CPU void compute(CornerLanes& corners, SpokeLanes& spokes) {
+    corners.compute(spokes);
 }
 
 }  // namespace
@@ -166,16 +173,13 @@ vec3 unit_or_zero(const vec3& v) {
     return squared > 0.0f ? (1.0f / std::sqrt(squared)) * v : v;
 }
 
-void make_spokes(const SourceScene& scene, std::span<const std::uint32_t> corners, Spoke* spokes) {
-    SpokeBatch batch{};
-    for (std::size_t begin = 0; begin < corners.size(); begin += kLanes) {
-        const std::size_t count = std::min(kLanes, corners.size() - begin);
-        for (std::size_t i = 0; i < count; ++i) batch.load(i, scene, corners[begin + i]);
-        compute(batch);
-        for (std::size_t i = 0; i < count; ++i) {
-            spokes[begin + i] = {batch.face.s.get(i), batch.face.t.get(i), batch.angle[i],
-                                 batch.face.area[i] > 0.0f, batch.face.usable[i] > 0.0f};
-        }
+void Spokes::make(const SourceScene& scene, std::span<const Slot> slots) {
+    lanes_.resize((slots.size() + kLanes - 1) / kLanes);
+    CornerLanes batch{};
+    for (std::size_t begin = 0; begin < slots.size(); begin += kLanes) {
+        const std::size_t count = std::min(kLanes, slots.size() - begin);
+        for (std::size_t i = 0; i < count; ++i) batch.load(i, scene, slots[begin + i]);
+        compute(batch, lanes_[begin / kLanes]);
     }
 }
 
@@ -191,7 +195,7 @@ std::vector<std::uint32_t> find_unusable_faces(const SourceScene& scene) {
                 lanes.load(i, scene, &scene.corners[3 * (begin + i)]);
             compute(lanes);
             for (std::size_t i = 0; i < count; ++i)
-                if (lanes.usable[i] == 0.0f)
+                if (lanes.usable[i] == 0)
                     found[block].push_back(static_cast<std::uint32_t>(begin + i));
         }
     });

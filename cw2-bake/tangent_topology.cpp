@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <tuple>
 
 namespace bake {
@@ -14,7 +15,7 @@ auto as_tuple(const Corner& corner) {
 }
 
 bool equal(const Corner& a, const Corner& b) {
-    return as_tuple(a) == as_tuple(b);
+    return ((a.position ^ b.position) | (a.normal ^ b.normal) | (a.uv ^ b.uv)) == 0;
 }
 
 }  // namespace
@@ -40,9 +41,13 @@ CornerLists list_corners(const SourceScene& scene) {
 
     CornerLists lists;
     lists.first.resize(position_count + 1);
+    lists.first[0] = 0;
     std::vector<std::uint32_t> totals(tasks + 1);
-    // Counts in place of position + 1: where the next position's list starts, within the task's.
+    // In place of position + 1: how many corners, then where the next of them goes, which is at
+    // last where the next position's list starts.
     tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
+        std::fill(lists.first.begin() + 1 + first_position(task),
+                  lists.first.begin() + 1 + first_position(task + 1), 0);
         std::uint32_t total = 0;
         for_own_corners(task, [&](std::uint32_t position, std::uint32_t) {
             ++lists.first[position + 1];
@@ -52,90 +57,81 @@ CornerLists list_corners(const SourceScene& scene) {
     });
     for (std::size_t task = 0; task < tasks; ++task) totals[task + 1] += totals[task];
     lists.corner.resize(scene.corners.size());
-    RawVector<std::uint32_t> next(position_count);
     tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
         std::uint32_t start = totals[task];
-        for (std::uint32_t p = first_position(task); p < first_position(task + 1); ++p) {
-            next[p] = start;
-            start += lists.first[p + 1];
-            lists.first[p + 1] = start;
-        }
+        for (std::uint32_t p = first_position(task); p < first_position(task + 1); ++p)
+            start += std::exchange(lists.first[p + 1], start);
         for_own_corners(task, [&](std::uint32_t position, std::uint32_t corner) {
-            lists.corner[next[position]++] = corner;
+            lists.corner[lists.first[position + 1]++] = corner;
         });
     });
     return lists;
 }
 
-void CornerSlots::clear() {
-    vertices.clear();
-    corner.clear();
-    across_leaving.clear();
-    across_arriving.clear();
-}
-
-void SlotMaker::make_keys(std::span<const std::uint32_t> corners) {
-    keys_.clear();
-    bool sorted = true;
-    for (const std::uint32_t c : corners) {
-        const Corner* face = &scene_.corners[c - c % 3];
-        const bool degenerate = face[0].position == face[1].position ||
-                                face[0].position == face[2].position ||
-                                face[1].position == face[2].position;
-        const Corner& own = scene_.corners[c];
-        keys_.push_back({own.normal, own.uv, scene_.triangle_material[c / 3], degenerate, c});
-        sorted &= keys_.size() == 1 || keys_[keys_.size() - 2] < keys_.back();
+void CornerSlots::add(const SourceScene& scene, std::span<const std::uint32_t> corners) {
+    // Tables, as no processor foresees which of its face's corners the next one is.
+    constexpr std::uint32_t kNext[] = {1, 2, 0};
+    constexpr std::uint32_t kPrevious[] = {2, 0, 1};
+    const std::size_t first = slots.size();
+    slots.resize(first + corners.size());
+    Slot* slot = &slots[first];
+    std::uint32_t differences = 0;
+    for (const std::uint32_t corner : corners) {
+        const std::uint32_t face = corner / 3;
+        const Corner* const of_face = &scene.corners[3 * std::size_t{face}];
+        const std::uint32_t k = corner % 3;
+        *slot = {of_face[k],
+                 of_face[kNext[k]],
+                 of_face[kPrevious[k]],
+                 scene.triangle_material[face],
+                 face,
+                 corner};
+        differences |= (slot->own.normal ^ slots[first].own.normal) |
+                       (slot->own.uv ^ slots[first].own.uv) |
+                       (slot->material ^ slots[first].material) | std::uint32_t{slot->degenerate()};
+        ++slot;
     }
-    if (!sorted) std::sort(keys_.begin(), keys_.end());
+    const auto begin = static_cast<std::uint32_t>(first);
+    const auto end = static_cast<std::uint32_t>(slots.size());
+    if (differences != 0)
+        add_vertices(begin);
+    else if (begin < end)
+        vertices.push_back({begin, end, end});
 }
 
-void SlotMaker::add(std::span<const std::uint32_t> corners) {
-    make_keys(corners);
-    for (std::size_t i = 0; i < keys_.size();) {
-        const Key& key = keys_[i];
-        VertexSlots vertex{.first = static_cast<std::uint32_t>(slots_.corner.size())};
-        for (; i < keys_.size() && keys_[i].same_vertex(key) && !keys_[i].degenerate; ++i)
-            slots_.corner.push_back(keys_[i].corner);
-        vertex.degenerate = static_cast<std::uint32_t>(slots_.corner.size());
-        for (; i < keys_.size() && keys_[i].same_vertex(key); ++i)
-            slots_.corner.push_back(keys_[i].corner);
-        vertex.end = static_cast<std::uint32_t>(slots_.corner.size());
-        slots_.vertices.push_back(vertex);
-        slots_.across_leaving.resize(vertex.end, kNoSlot);
-        slots_.across_arriving.resize(vertex.end, kNoSlot);
-        link(vertex);
+/// Sorts the slots from `first` on.
+void CornerSlots::add_vertices(std::uint32_t first) {
+    const auto vertex_of = [](const Slot& slot) {
+        return std::tie(slot.own.normal, slot.own.uv, slot.material);
+    };
+    std::sort(slots.begin() + first, slots.end(), [&](const Slot& a, const Slot& b) {
+        return std::tuple_cat(vertex_of(a), std::tuple(a.degenerate(), a.corner)) <
+               std::tuple_cat(vertex_of(b), std::tuple(b.degenerate(), b.corner));
+    });
+    for (std::uint32_t i = first; i < slots.size();) {
+        VertexSlots vertex{.first = i};
+        const auto is_same = [&] {
+            return i < slots.size() && vertex_of(slots[i]) == vertex_of(slots[vertex.first]);
+        };
+        while (is_same() && !slots[i].degenerate()) ++i;
+        vertex.degenerate = i;
+        while (is_same()) ++i;
+        vertex.end = i;
+        vertices.push_back(vertex);
     }
 }
 
-void SlotMaker::link(const VertexSlots& vertex) {
-    constexpr std::uint32_t kFew = 24;
+void SlotLinks::link(const VertexSlots& vertex) {
+    across_leaving_.resize(slots_.slots.size());
+    across_arriving_.resize(slots_.slots.size());
     leaving_.clear();
     arriving_.clear();
     for (std::uint32_t slot = vertex.first; slot < vertex.degenerate; ++slot) {
-        const std::uint32_t corner = slots_.corner[slot];
-        leaving_.push_back({scene_.corners[next_corner(corner)], slot});
-        arriving_.push_back({scene_.corners[previous_corner(corner)], slot});
+        leaving_.push_back({slots_.slots[slot].next, slot});
+        arriving_.push_back({slots_.slots[slot].previous, slot});
+        across_leaving_[slot] = across_arriving_[slot] = kNoSlot;
     }
-    if (leaving_.size() <= kFew)
-        link_by_search();
-    else
-        link_by_sorting();
-}
-
-void SlotMaker::link_by_search() {
-    for (const Spoke& leaving : leaving_) {
-        for (const Spoke& arriving : arriving_) {
-            if (!equal(arriving.end, leaving.end) ||
-                slots_.across_arriving[arriving.slot] != kNoSlot)
-                continue;
-            join(leaving, arriving);
-            break;
-        }
-    }
-}
-
-void SlotMaker::link_by_sorting() {
-    const auto before = [](const Spoke& a, const Spoke& b) {
+    const auto before = [](const Edge& a, const Edge& b) {
         return std::tuple_cat(as_tuple(a.end), std::tie(a.slot)) <
                std::tuple_cat(as_tuple(b.end), std::tie(b.slot));
     };
@@ -144,13 +140,56 @@ void SlotMaker::link_by_sorting() {
     auto leaving = leaving_.begin();
     auto arriving = arriving_.begin();
     while (leaving != leaving_.end() && arriving != arriving_.end()) {
-        if (as_tuple(leaving->end) < as_tuple(arriving->end))
+        if (as_tuple(leaving->end) < as_tuple(arriving->end)) {
             ++leaving;
-        else if (as_tuple(arriving->end) < as_tuple(leaving->end))
+        } else if (as_tuple(arriving->end) < as_tuple(leaving->end)) {
             ++arriving;
-        else
-            join(*leaving++, *arriving++);
+        } else {
+            across_leaving_[leaving->slot] = arriving->slot;
+            across_arriving_[arriving->slot] = leaving->slot;
+            ++leaving;
+            ++arriving;
+        }
     }
+}
+
+bool hang_together(std::span<const Slot> slots) {
+    // 16 bits of a position tell which faces may be neighbours: bit i of candidates[j], whether j
+    // arrives from where i leaves to.
+    using Few = std::uint16_t __attribute__((vector_size(2 * kFewSlots)));
+    Few from{};
+    Few candidates{};
+    const std::size_t count = slots.size();
+    for (std::size_t i = 0; i < count; ++i)
+        from[i] = static_cast<std::uint16_t>(slots[i].previous.position);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Few to = Few{} + static_cast<std::uint16_t>(slots[i].next.position);
+        candidates |= (from == to) & static_cast<std::uint16_t>(1u << i);
+    }
+    constexpr std::size_t kNobody = kFewSlots;
+    std::uint8_t next[kFewSlots + 1];
+    std::fill(std::begin(next), std::end(next), kNobody);
+    std::uint32_t taken = 0;
+    std::uint32_t shared = 0;
+    std::size_t ends = 0;
+    std::size_t start = 0;
+    for (std::size_t j = 0; j < count; ++j) {
+        const std::uint32_t matches = candidates[j];
+        shared |= matches & (taken | (matches - 1));
+        taken |= matches;
+        const std::size_t i = static_cast<std::size_t>(std::countr_zero(matches | 0x100)) % 8;
+        const bool linked = matches != 0 && equal(slots[i].next, slots[j].previous);
+        next[linked ? i : kNobody] = static_cast<std::uint8_t>(linked ? j : kNobody);
+        ends += !linked;
+        start = linked ? start : j;
+    }
+    if (shared != 0 || ends > 1) return false;
+    std::size_t at = start;
+    for (std::size_t step = 1; step < count; ++step) {
+        at = next[at];
+        if (at == start || at == kNobody) return false;
+    }
+    return true;
 }
 
 }  // namespace bake

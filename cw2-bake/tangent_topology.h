@@ -12,18 +12,10 @@ namespace bake {
 
 inline constexpr std::uint32_t kNoSlot = 0xFFFF'FFFF;
 
-inline std::uint32_t next_corner(std::uint32_t corner) {
-    return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-
-inline std::uint32_t previous_corner(std::uint32_t corner) {
-    return corner % 3 == 0 ? corner + 2 : corner - 1;
-}
-
 /// The corners at each position of a welded scene: those of position p, ascending, are
 /// corner[first[p]] .. corner[first[p + 1]].
 struct CornerLists {
-    std::vector<std::uint32_t> first;
+    RawVector<std::uint32_t> first;
     RawVector<std::uint32_t> corner;
 
     std::span<const std::uint32_t> at(std::uint32_t position) const {
@@ -33,8 +25,25 @@ struct CornerLists {
 
 CornerLists list_corners(const SourceScene& scene);
 
-/// The corners of some vertices: those of vertex v are the slots first .. end. Faces with two
-/// corners at one position are degenerate and take no part: theirs come last.
+/// A corner, and what its face has to do with others there.
+struct Slot {
+    Corner own;
+    Corner next;  ///< the face's
+    Corner previous;
+    std::uint32_t material;
+    std::uint32_t face;
+    std::uint32_t corner;  ///< 3 face + 0, 1 or 2
+
+    /// Two corners of the face are at one position.
+    bool degenerate() const {
+        // Not ||: no processor foresees such faces.
+        return (own.position == next.position) | (own.position == previous.position) |
+               (next.position == previous.position);
+    }
+};
+
+/// The corners of some vertices: those of vertex v are the slots first .. end. Degenerate faces
+/// take no part: theirs come last.
 struct VertexSlots {
     std::uint32_t first;  ///< corners of other faces, ascending
     std::uint32_t degenerate;
@@ -43,65 +52,58 @@ struct VertexSlots {
 
 struct CornerSlots {
     std::vector<VertexSlots> vertices;
-    std::vector<std::uint32_t> corner;
-    /// Across the edge that leaves (arrives at) the slot's corner: the slot, at the same vertex,
-    /// of the face on the other side, or kNoSlot. Where more than two faces share an edge, the
-    /// k-th that leaves along it (in face order) and the k-th that arrives along it are neighbours.
-    std::vector<std::uint32_t> across_leaving;
-    std::vector<std::uint32_t> across_arriving;
+    RawVector<Slot> slots;
 
-    void clear();
-};
-
-/// Adds the vertices at one position after another to `slots`, linked.
-class SlotMaker {
- public:
-    SlotMaker(const SourceScene& scene, CornerSlots& slots) : scene_(scene), slots_(slots) {}
-
-    /// `corners` are all those at one position, ascending.
-    void add(std::span<const std::uint32_t> corners);
+    void clear() {
+        vertices.clear();
+        slots.clear();
+    }
+    /// Adds the vertices at a position; `corners` are all those there, ascending.
+    void add(const SourceScene& scene, std::span<const std::uint32_t> corners);
 
  private:
-    struct Key {
-        std::uint32_t normal, uv, material;
-        bool degenerate;
-        std::uint32_t corner;
+    void add_vertices(std::uint32_t first);
+};
 
-        bool same_vertex(const Key& other) const {
-            return normal == other.normal && uv == other.uv && material == other.material;
-        }
-        auto operator<=>(const Key&) const = default;
-    };
-    struct Spoke {
-        Corner end;  ///< the edge's other end
+/// Which slots at a vertex are neighbours: faces that share an edge there, one leaving along it and
+/// one arriving.
+class SlotLinks {
+ public:
+    explicit SlotLinks(const CornerSlots& slots) : slots_(slots) {}
+
+    /// Where more than two faces share an edge, the k-th that leaves along it (in face order) and
+    /// the k-th that arrives along it are neighbours.
+    void link(const VertexSlots& vertex);
+
+    /// Walks from `start`, of a vertex that is linked, across the edges at the vertex, both ways
+    /// round, and calls visit(slot) for each slot; a false answer ends the way. As each slot has
+    /// one neighbour either way, this reaches all that hangs together with `start`.
+    template <typename Visit>
+    void walk_around(std::uint32_t start, Visit&& visit) const {
+        for (std::uint32_t slot = across_leaving_[start]; slot != kNoSlot && visit(slot);)
+            slot = across_leaving_[slot];
+        for (std::uint32_t slot = across_arriving_[start]; slot != kNoSlot && visit(slot);)
+            slot = across_arriving_[slot];
+    }
+
+ private:
+    struct Edge {
+        Corner end;  ///< the other one
         std::uint32_t slot;
     };
 
-    void make_keys(std::span<const std::uint32_t> corners);
-    void link(const VertexSlots& vertex);
-    void link_by_search();
-    void link_by_sorting();
-    void join(const Spoke& leaving, const Spoke& arriving) {
-        slots_.across_leaving[leaving.slot] = arriving.slot;
-        slots_.across_arriving[arriving.slot] = leaving.slot;
-    }
-
-    const SourceScene& scene_;
-    CornerSlots& slots_;
-    std::vector<Key> keys_;
-    std::vector<Spoke> leaving_;
-    std::vector<Spoke> arriving_;
+    const CornerSlots& slots_;
+    // Across the edge that leaves (arrives at) the slot's corner: the slot, at the same vertex, of
+    // the face on the other side, or kNoSlot.
+    std::vector<std::uint32_t> across_leaving_;
+    std::vector<std::uint32_t> across_arriving_;
+    std::vector<Edge> leaving_;
+    std::vector<Edge> arriving_;
 };
 
-/// Walks from `start` across the edges at its vertex, both ways round, and calls visit(slot) for
-/// each slot; a false answer ends the way. As each slot has one neighbour either way, this reaches
-/// all that hangs together with `start`.
-template <typename Visit>
-void walk_around(const CornerSlots& slots, std::uint32_t start, Visit&& visit) {
-    for (std::uint32_t slot = slots.across_leaving[start]; slot != kNoSlot && visit(slot);)
-        slot = slots.across_leaving[slot];
-    for (std::uint32_t slot = slots.across_arriving[start]; slot != kNoSlot && visit(slot);)
-        slot = slots.across_arriving[slot];
-}
+/// Whether at most kFewSlots faces at a vertex all hang together, and no edge has more than two of
+/// them. May answer false where they do.
+inline constexpr std::uint32_t kFewSlots = 8;
+bool hang_together(std::span<const Slot> slots);
 
 }  // namespace bake

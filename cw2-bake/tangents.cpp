@@ -1,8 +1,8 @@
 #include "cw2-bake/tangents.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
+#include <tbb/concurrent_queue.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ using glm::vec4;
 
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 constexpr vec4 kUnreached{1.0f, 0.0f, 0.0f, -1.0f};
-constexpr std::uint32_t kPositionsPerBlock = 1024;
+constexpr std::uint32_t kPositionsPerBlock = 256;
 constexpr std::uint32_t kPositionsAhead = 8;
 
 bool is_unit(const vec3& v) {
@@ -33,23 +33,38 @@ bool close(const vec3& a, const vec3& b) {
     return glm::dot(a, b) > 0.01f;
 }
 
-/// Makes the tangents of the corners at some vertices; reused from block to block by one thread.
-class SlotTangents {
+/// Makes the framed vertices at some positions; reused for one block of positions after another.
+class FramedBlock {
  public:
-    SlotTangents(const SourceScene& scene, const Windings& windings)
-        : scene_(scene), windings_(windings) {}
+    FramedBlock(const SourceScene& scene, const CornerLists& lists, const Windings& windings)
+        : scene_(scene), lists_(lists), windings_(windings), links_(slots_) {}
 
-    /// The tangent of the corner of each slot; valid until the next call.
-    std::span<const vec4> make(const CornerSlots& slots) {
-        const std::size_t count = slots.corner.size();
-        spokes_.resize(count);
+    /// The positions begin .. end.
+    void make(std::uint32_t begin, std::uint32_t end) {
+        slots_.clear();
+        for (std::uint32_t p = begin; p < end; ++p) {
+            prefetch_faces(std::min(p + kPositionsAhead, end - 1));
+            slots_.add(scene_, lists_.at(p));
+        }
+        const std::size_t count = slots_.slots.size();
+        spokes_.make(scene_, slots_.slots);
+        windings_.settle(slots_.slots, spokes_);
         group_.assign(count, kNone);
-        tangents_.assign(count, kUnreached);
-        make_spokes(scene_, slots.corner, spokes_.data());
-        windings_.settle(slots.corner, spokes_);
-        for (const VertexSlots& vertex : slots.vertices) make_vertex(slots, vertex);
-        if (!scene_.tangents.empty()) take_given(slots);
-        return tangents_;
+        tangents_.resize(count);
+        vertex_.resize(count);
+        vertices_.clear();
+        for (const VertexSlots& vertex : slots_.vertices) {
+            if (!make_plain_vertex(vertex)) make_vertex(vertex);
+        }
+    }
+
+    std::size_t vertex_count() const { return vertices_.size(); }
+
+    /// Puts the vertices where number `first` is, and tells each corner its own's number.
+    void store(std::uint32_t first, FramedTriangles& triangles) const {
+        std::copy(vertices_.begin(), vertices_.end(), triangles.vertices.begin() + first);
+        for (std::size_t slot = 0; slot < vertex_.size(); ++slot)
+            triangles.indices[slots_.slots[slot].corner] = first + vertex_[slot];
     }
 
  private:
@@ -60,36 +75,68 @@ class SlotTangents {
         vec4 tangent{0.0f};
     };
 
-    void take_given(const CornerSlots& slots) {
-        for (std::size_t slot = 0; slot < slots.corner.size(); ++slot) {
-            const vec4& given = scene_.tangents[slots.corner[slot]];
-            if (given.w != 0.0f) tangents_[slot] = given;
-        }
+    /// Starts to fetch what is first asked of the corners' faces: they lie all over the memory.
+    void prefetch_faces(std::uint32_t position) const {
+        for (const std::uint32_t corner : lists_.at(position))
+            __builtin_prefetch(&scene_.corners[corner]);
     }
 
-    void make_vertex(const CornerSlots& slots, const VertexSlots& vertex) {
+    /// Makes the vertex if all its faces are shown to be one group, no two of them opposite. Else
+    /// answers false.
+    bool make_plain_vertex(const VertexSlots& vertex) {
+        const std::uint32_t count = vertex.degenerate - vertex.first;
+        if (count == 0 || count > kFewSlots || !scene_.tangents.empty()) return false;
+        std::uint32_t usable = 0;
+        std::uint32_t preserving = 0;
+        vec3 sum{0.0f};
+        vec3 sum_s{0.0f};
+        vec3 sum_t{0.0f};
+        for (std::uint32_t slot = vertex.first; slot < vertex.degenerate; ++slot) {
+            usable += spokes_.usable(slot);
+            preserving += spokes_.preserving(slot);
+            sum += spokes_.weighted_s(slot);
+            sum_s += spokes_.s(slot);
+            sum_t += spokes_.t(slot);
+        }
+        if (usable != count || (preserving != 0 && preserving != count)) return false;
+        // Two opposite ones would leave count - 2 at most of these sums of unit vectors.
+        const float enough = std::max(static_cast<float>(count) - 1.9f, 0.0f);
+        if (glm::dot(sum_s, sum_s) < enough * enough || glm::dot(sum_t, sum_t) < enough * enough)
+            return false;
+        if (!hang_together(std::span(slots_.slots).subspan(vertex.first, count))) return false;
+        std::fill(&vertex_[vertex.first], &vertex_[vertex.end],
+                  static_cast<std::uint32_t>(vertices_.size()));
+        vertices_.push_back({slots_.slots[vertex.first].own, tangent(sum, vertex.first)});
+        return true;
+    }
+
+    void make_vertex(const VertexSlots& vertex) {
         const std::uint32_t begin = vertex.first;
         const std::uint32_t end = vertex.degenerate;
-        find_groups(slots, begin, end);
+        std::fill(&tangents_[begin], &tangents_[vertex.end], kUnreached);
+        find_groups(vertex);
         sum_groups(begin, end);
         for (std::uint32_t slot = begin; slot < end; ++slot)
             if (group_[slot] != kNone) tangents_[slot] = groups_[group_[slot]].tangent;
         exclude_opposites(begin, end);
         // A degenerate face takes what the first other one at the vertex has.
         if (begin < end) std::fill_n(&tangents_[end], vertex.end - end, tangents_[begin]);
+        if (!scene_.tangents.empty()) take_given(vertex);
+        split(vertex);
     }
 
     /// The faces of one winding that hang together across the edges at the vertex.
-    void find_groups(const CornerSlots& slots, std::uint32_t begin, std::uint32_t end) {
+    void find_groups(const VertexSlots& vertex) {
         groups_.clear();
-        for (std::uint32_t start = begin; start < end; ++start) {
-            if (group_[start] != kNone || !spokes_[start].usable) continue;
+        links_.link(vertex);
+        for (std::uint32_t start = vertex.first; start < vertex.degenerate; ++start) {
+            if (group_[start] != kNone || !spokes_.usable(start)) continue;
             const auto index = static_cast<std::uint32_t>(groups_.size());
-            const bool preserving = spokes_[start].preserving;
+            const bool preserving = spokes_.preserving(start);
             groups_.push_back({.first = start});
             group_[start] = index;
-            walk_around(slots, start, [&](std::uint32_t slot) {
-                if (group_[slot] != kNone || spokes_[slot].preserving != preserving) return false;
+            links_.walk_around(start, [&](std::uint32_t slot) {
+                if (group_[slot] != kNone || spokes_.preserving(slot) != preserving) return false;
                 group_[slot] = index;
                 return true;
             });
@@ -98,13 +145,11 @@ class SlotTangents {
 
     void sum_groups(std::uint32_t begin, std::uint32_t end) {
         for (std::uint32_t slot = begin; slot < end; ++slot) {
-            const Spoke& spoke = spokes_[slot];
-            if (!spoke.usable) continue;
+            if (!spokes_.usable(slot)) continue;
             Group& group = groups_[group_[slot]];
-            const Spoke& first = spokes_[group.first];
-            group.wide |=
-                slot != group.first && !(close(first.s, spoke.s) && close(first.t, spoke.t));
-            group.sum += spoke.angle * spoke.s;
+            group.wide |= slot != group.first && !(close(spokes_.s(group.first), spokes_.s(slot)) &&
+                                                   close(spokes_.t(group.first), spokes_.t(slot)));
+            group.sum += spokes_.weighted_s(slot);
         }
         for (Group& group : groups_) group.tangent = tangent(group.sum, group.first);
     }
@@ -116,19 +161,20 @@ class SlotTangents {
             if (!groups_[index].wide) continue;
             members_.clear();
             for (std::uint32_t slot = begin; slot < end; ++slot)
-                if (group_[slot] == index && spokes_[slot].usable) members_.push_back(slot);
+                if (group_[slot] == index && spokes_.usable(slot)) members_.push_back(slot);
             for (const std::uint32_t slot : members_) exclude_opposites_of(slot);
         }
     }
 
     void exclude_opposites_of(std::uint32_t slot) {
-        const Spoke& own = spokes_[slot];
+        const vec3 s = spokes_.s(slot);
+        const vec3 t = spokes_.t(slot);
         bool whole = true;
         vec3 sum{0.0f};
         for (const std::uint32_t other : members_) {
-            const Spoke& its = spokes_[other];
-            if (other == slot || (glm::dot(own.s, its.s) > -1.0f && glm::dot(own.t, its.t) > -1.0f))
-                sum += its.angle * its.s;
+            if (other == slot ||
+                (glm::dot(s, spokes_.s(other)) > -1.0f && glm::dot(t, spokes_.t(other)) > -1.0f))
+                sum += spokes_.weighted_s(other);
             else
                 whole = false;
         }
@@ -139,96 +185,100 @@ class SlotTangents {
     /// one of those summed, stands in.
     vec4 tangent(const vec3& sum, std::uint32_t slot) const {
         vec3 unit = unit_or_zero(sum);
-        if (!is_unit(unit)) unit = spokes_[slot].s;
+        if (!is_unit(unit)) unit = spokes_.s(slot);
         if (!is_unit(unit)) unit = vec3(kUnreached);
-        return {unit, spokes_[slot].preserving ? 1.0f : -1.0f};
+        return {unit, spokes_.preserving(slot) ? 1.0f : -1.0f};
+    }
+
+    void take_given(const VertexSlots& vertex) {
+        for (std::uint32_t slot = vertex.first; slot < vertex.end; ++slot) {
+            const vec4& given = scene_.tangents[slots_.slots[slot].corner];
+            if (given.w != 0.0f) tangents_[slot] = given;
+        }
+    }
+
+    /// One framed vertex for each tangent.
+    void split(const VertexSlots& vertex) {
+        const std::size_t first = vertices_.size();
+        for (std::uint32_t slot = vertex.first; slot < vertex.end; ++slot) {
+            std::size_t v = first;
+            while (v < vertices_.size() && vertices_[v].tangent != tangents_[slot]) ++v;
+            if (v == vertices_.size())
+                vertices_.push_back({slots_.slots[slot].own, tangents_[slot]});
+            vertex_[slot] = static_cast<std::uint32_t>(v);
+        }
     }
 
     const SourceScene& scene_;
+    const CornerLists& lists_;
     const Windings& windings_;
+    CornerSlots slots_;
+    SlotLinks links_;
+    std::vector<FramedVertex> vertices_;
     // Of each slot:
-    std::vector<Spoke> spokes_;
+    Spokes spokes_;
     std::vector<std::uint32_t> group_;  // kNone if none reached it
     std::vector<vec4> tangents_;
+    std::vector<std::uint32_t> vertex_;
     // Of one vertex:
     std::vector<Group> groups_;
     std::vector<std::uint32_t> members_;  // the slots of one group that have usable UVs
 };
 
-/// Appends the framed vertices at the slots' vertices, and tells each corner its own's number.
-void make_vertices(const SourceScene& scene, const CornerSlots& slots,
-                   std::span<const vec4> tangents, std::vector<FramedVertex>& vertices,
-                   std::span<std::uint32_t> indices) {
-    vertices.reserve(slots.vertices.size() * 5 / 4);
-    for (const VertexSlots& vertex : slots.vertices) {
-        const std::size_t first = vertices.size();
-        for (std::uint32_t slot = vertex.first; slot < vertex.end; ++slot) {
-            const std::uint32_t corner = slots.corner[slot];
-            std::size_t v = first;
-            while (v < vertices.size() && vertices[v].tangent != tangents[slot]) ++v;
-            if (v == vertices.size()) vertices.push_back({scene.corners[corner], tangents[slot]});
-            indices[corner] = static_cast<std::uint32_t>(v);
-        }
-    }
-}
-
-/// One after the other in one array; frees each part once it is copied.
-RawVector<FramedVertex> concatenate(std::vector<std::vector<FramedVertex>>& blocks,
-                                    const std::vector<std::uint32_t>& first) {
-    RawVector<FramedVertex> vertices(first.back());
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
-        std::copy(blocks[i].begin(), blocks[i].end(), vertices.begin() + first[i]);
-        std::vector<FramedVertex>().swap(blocks[i]);
-    });
-    return vertices;
-}
-
-/// Starts to fetch what is first asked of the corners' faces: they lie all over the memory.
-void prefetch_faces(const SourceScene& scene, std::span<const std::uint32_t> corners) {
-    for (const std::uint32_t corner : corners) __builtin_prefetch(&scene.corners[corner]);
-}
-
 }  // namespace
 
+/// Blocks of positions are made in parallel, numbered in their order, and stored in parallel.
 FramedTriangles add_tangents(const SourceScene& scene) {
-    FramedTriangles result;
     const CornerLists lists = list_corners(scene);
     const Windings windings(scene, lists);
-
-    struct Scratch {
-        Scratch(const SourceScene& scene, const Windings& windings)
-            : slot_maker(scene, slots), tangents(scene, windings) {}
-        CornerSlots slots;
-        SlotMaker slot_maker;
-        SlotTangents tangents;
-    };
-    tbb::enumerable_thread_specific<Scratch> scratches(std::cref(scene), std::cref(windings));
-    const auto position_count = static_cast<std::uint32_t>(scene.positions.size());
-    std::vector<std::vector<FramedVertex>> blocks((position_count + kPositionsPerBlock - 1) /
-                                                  kPositionsPerBlock);
+    FramedTriangles result;
     result.indices.resize(scene.corners.size());
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t block) {
-        Scratch& scratch = scratches.local();
-        scratch.slots.clear();
-        const auto begin = static_cast<std::uint32_t>(block) * kPositionsPerBlock;
-        const std::uint32_t end = std::min(begin + kPositionsPerBlock, position_count);
-        for (std::uint32_t p = begin; p < end; ++p) {
-            prefetch_faces(scene, lists.at(std::min(p + kPositionsAhead, position_count - 1)));
-            scratch.slot_maker.add(lists.at(p));
-        }
-        make_vertices(scene, scratch.slots, scratch.tangents.make(scratch.slots), blocks[block],
-                      result.indices);
-    });
+    result.vertices.resize(scene.corners.size());  // at most; what is left over is never touched
 
-    std::vector<std::uint32_t> first{0};
-    for (const auto& block : blocks)
-        first.push_back(first.back() + static_cast<std::uint32_t>(block.size()));
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, scene.corners.size(), 1 << 14), [&](const auto& range) {
-            for (std::size_t c = range.begin(); c < range.end(); ++c)
-                result.indices[c] += first[scene.corners[c].position / kPositionsPerBlock];
-        });
-    result.vertices = concatenate(blocks, first);
+    struct Work {
+        FramedBlock* block;
+        std::uint32_t begin;  ///< the first position; then the number of the first vertex
+    };
+    const std::size_t at_once =
+        2 * tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    std::vector<FramedBlock> blocks;
+    blocks.reserve(at_once);
+    tbb::concurrent_queue<FramedBlock*> idle;
+    for (std::size_t i = 0; i < at_once; ++i)
+        idle.push(&blocks.emplace_back(scene, lists, windings));
+    const auto position_count = static_cast<std::uint32_t>(scene.positions.size());
+    std::uint32_t next_position = 0;
+    std::uint32_t next_vertex = 0;
+    const auto take = [&](tbb::flow_control& flow) {
+        Work work{nullptr, next_position};
+        if (next_position == position_count)
+            flow.stop();
+        else
+            idle.try_pop(work.block);
+        next_position += std::min(kPositionsPerBlock, position_count - next_position);
+        return work;
+    };
+    const auto make = [&](const Work& work) {
+        work.block->make(work.begin,
+                         work.begin + std::min(kPositionsPerBlock, position_count - work.begin));
+        return work;
+    };
+    const auto number = [&](const Work& work) {
+        const std::uint32_t first = next_vertex;
+        next_vertex += static_cast<std::uint32_t>(work.block->vertex_count());
+        return Work{work.block, first};
+    };
+    const auto store = [&](const Work& work) {
+        work.block->store(work.begin, result);
+        idle.push(work.block);
+    };
+    using tbb::filter_mode;
+    tbb::parallel_pipeline(at_once,
+                           tbb::make_filter<void, Work>(filter_mode::serial_in_order, take) &
+                               tbb::make_filter<Work, Work>(filter_mode::parallel, make) &
+                               tbb::make_filter<Work, Work>(filter_mode::serial_in_order, number) &
+                               tbb::make_filter<Work, void>(filter_mode::parallel, store));
+    result.vertices.resize(next_vertex);
     return result;
 }
 

@@ -7,11 +7,12 @@ namespace bake {
 namespace {
 
 /// The vertices where both kinds of faces meet: nothing passes from face to face elsewhere.
-void keep_mixed_vertices(CornerSlots& slots, std::span<const Spoke> spokes) {
+void keep_mixed_vertices(CornerSlots& slots, const Spokes& spokes) {
     std::erase_if(slots.vertices, [&](const VertexSlots& vertex) {
-        const auto own = spokes.subspan(vertex.first, vertex.degenerate - vertex.first);
-        const auto usable = std::ranges::count(own, true, &Spoke::usable);
-        return usable == 0 || usable == static_cast<std::ptrdiff_t>(own.size());
+        std::uint32_t usable = 0;
+        for (std::uint32_t slot = vertex.first; slot < vertex.degenerate; ++slot)
+            usable += spokes.usable(slot);
+        return usable == 0 || usable == vertex.degenerate - vertex.first;
     });
 }
 
@@ -29,32 +30,33 @@ Windings::Windings(const SourceScene& scene, const CornerLists& lists)
     positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
 
     CornerSlots slots;
-    SlotMaker maker(scene, slots);
-    for (const std::uint32_t position : positions) maker.add(lists.at(position));
-    std::vector<Spoke> spokes(slots.corner.size());
-    make_spokes(scene, slots.corner, spokes.data());
+    for (const std::uint32_t position : positions) slots.add(scene, lists.at(position));
+    Spokes spokes;
+    spokes.make(scene, slots.slots);
     keep_mixed_vertices(slots, spokes);
-    grow_groups(slots, spokes);
+    SlotLinks links(slots);
+    for (const VertexSlots& vertex : slots.vertices) links.link(vertex);
+    grow_groups(slots, links, spokes);
 }
 
-void Windings::grow_groups(const CornerSlots& slots, std::span<const Spoke> spokes) {
+void Windings::grow_groups(const CornerSlots& slots, const SlotLinks& links, const Spokes& spokes) {
     std::vector<std::uint32_t> starts;
     for (const VertexSlots& vertex : slots.vertices) {
         for (std::uint32_t slot = vertex.first; slot < vertex.degenerate; ++slot)
-            if (spokes[slot].usable) starts.push_back(slot);
+            if (spokes.usable(slot)) starts.push_back(slot);
     }
-    std::ranges::sort(starts, {}, [&](std::uint32_t slot) { return slots.corner[slot]; });
+    std::ranges::sort(starts, {}, [&](std::uint32_t slot) { return slots.slots[slot].corner; });
 
-    std::vector<bool> grouped(slots.corner.size(), false);
+    std::vector<bool> grouped(slots.slots.size(), false);
     for (const std::uint32_t start : starts) {
         if (grouped[start]) continue;
-        const bool preserving = spokes[start].preserving;
+        const bool preserving = spokes.preserving(start);
         grouped[start] = true;
-        walk_around(slots, start, [&](std::uint32_t slot) {
+        links.walk_around(start, [&](std::uint32_t slot) {
             if (grouped[slot]) return false;
-            bool joins = spokes[slot].preserving == preserving;
-            if (!spokes[slot].usable) {
-                signed char& settled = preserving_[find(slots.corner[slot] / 3)];
+            bool joins = spokes.preserving(slot) == preserving;
+            if (!spokes.usable(slot)) {
+                signed char& settled = preserving_[find(slots.slots[slot].face)];
                 if (settled < 0) settled = preserving;
                 joins = settled == static_cast<signed char>(preserving);
             }
@@ -64,11 +66,11 @@ void Windings::grow_groups(const CornerSlots& slots, std::span<const Spoke> spok
     }
 }
 
-void Windings::settle(std::span<const std::uint32_t> corners, std::span<Spoke> spokes) const {
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        if (spokes[i].usable) continue;
-        const signed char settled = preserving_[find(corners[i] / 3)];
-        if (settled >= 0) spokes[i].preserving = settled != 0;
+void Windings::settle(std::span<const Slot> slots, Spokes& spokes) const {
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+        if (spokes.usable(i)) continue;
+        const signed char settled = preserving_[find(slots[i].face)];
+        if (settled >= 0) spokes.set_preserving(i, settled != 0);
     }
 }
 

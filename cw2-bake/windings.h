@@ -17,11 +17,11 @@ class Windings {
  public:
     Windings(const SourceScene& scene, const CornerLists& lists);
 
-    /// Puts the windings of such faces into spokes[i] of corners[i].
-    void settle(std::span<const std::uint32_t> corners, std::span<Spoke> spokes) const;
+    /// Puts the windings of such faces into their spokes, which are made of `slots`.
+    void settle(std::span<const Slot> slots, Spokes& spokes) const;
 
  private:
-    void grow_groups(const CornerSlots& slots, std::span<const Spoke> spokes);
+    void grow_groups(const CornerSlots& slots, const SlotLinks& links, const Spokes& spokes);
     /// Where the face is in unusable_, or its end.
     std::size_t find(std::uint32_t face) const;
 
