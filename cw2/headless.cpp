@@ -157,6 +157,11 @@ class Progress {
     Clock::time_point start_ = Clock::now();
 };
 
+std::filesystem::path file_of(const Options& options, std::uint32_t frame) {
+    if (!options.frames) return *options.output;
+    return frame_name(options.output->string(), frame).value_or(options.output->string());
+}
+
 /// A scene on its device, and what draws it into files.
 struct Studio {
     const Options& options;
@@ -178,7 +183,6 @@ struct Studio {
 
     void draw_turn(const FrameSettings& settings) {
         const FrameRange& range = *options.frames;
-        const std::string pattern = options.output->string();
         Saver saver(options.size);
         const Progress progress(range.size());
         for (std::uint32_t frame = range.first; frame <= range.last; ++frame) {
@@ -187,7 +191,7 @@ struct Studio {
             const Clock::time_point start = Clock::now();
             target.render(renderer, scene, now);
             if (frame == range.first) timings.first_frame = milliseconds_since(start);
-            saver.save(frame_name(pattern, frame).value_or(pattern), target.pixels(), now);
+            saver.save(file_of(options, frame), target.pixels(), now);
             progress.show(frame - range.first + 1);
         }
         saver.finish();
@@ -224,11 +228,24 @@ FrameSettings settings_for(ImageKind kind, const Options& options, const Scene& 
     return settings;
 }
 
+/// Throws mesh_format::FileError where a picture could not be written, before any is drawn.
+void require_writable(const Options& options) {
+    const FrameRange range = options.frames.value_or(FrameRange{0, 0, 1});
+    std::optional<std::filesystem::path> folder;
+    for (std::uint32_t frame = range.first; frame <= range.last; ++frame) {
+        const std::filesystem::path path = file_of(options, frame);
+        if (path.parent_path() == folder) continue;
+        folder = path.parent_path();
+        const mesh_format::OutputFile leaves_no_trace(path);
+    }
+}
+
 }  // namespace
 
 void render_to_file(const Device& device, const Options& options) {
-    const ImageKind kind = image_kind(*options.output);
+    const ImageKind kind = image_kind(*options.output).value();
     require_size(options, device);
+    require_writable(options);
     // Made now, so that no picture is there without the statistics that were asked for.
     std::optional<mesh_format::OutputFile> stats;
     if (options.stats) stats.emplace(*options.stats);

@@ -61,11 +61,11 @@ Bytes encode_exr(std::uint32_t width, std::uint32_t height, std::span<const std:
 
 }  // namespace
 
-ImageKind image_kind(const std::filesystem::path& path) {
+std::optional<ImageKind> image_kind(const std::filesystem::path& path) {
     const std::string extension = path.extension().string();
     if (extension == ".png") return ImageKind::png;
     if (extension == ".exr") return ImageKind::exr;
-    throw mesh_format::FileError(path.string() + ": unknown image format; use .png or .exr");
+    return std::nullopt;
 }
 
 void write_image(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,

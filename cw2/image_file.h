@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 namespace cw2 {
@@ -14,8 +15,8 @@ enum class ImageKind {
     exr,  ///< 32-bit float RGBA, linear
 };
 
-/// The kind that the name's extension asks for; throws mesh_format::FileError for any other.
-ImageKind image_kind(const std::filesystem::path& path);
+/// The kind that the name's extension asks for.
+std::optional<ImageKind> image_kind(const std::filesystem::path& path);
 
 /// Bytes of a pixel in memory, tightly packed RGBA: 4 x uint8 for png (alpha is dropped),
 /// 4 x float for exr.
@@ -23,8 +24,8 @@ constexpr std::size_t pixel_bytes(ImageKind kind) {
     return kind == ImageKind::png ? 4 : 16;
 }
 
-/// Writes width x height pixels, row 0 at the top, beside `path` and renames. The same pixels give
-/// the same bytes. Throws mesh_format::FileError.
+/// Writes width x height pixels, row 0 at the top, beside `path`, which has a kind, and renames.
+/// The same pixels give the same bytes. Throws mesh_format::FileError.
 void write_image(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
                  std::span<const std::byte> pixels);
 

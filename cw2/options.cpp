@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cw2/config.h"
+#include "cw2/image_file.h"
 #include "cw2/option_table.h"
 #include "mesh-format/io.h"
 
@@ -19,6 +20,8 @@ namespace {
 /// What a setting of the name, command line or config file, has told.
 void take(const Setting& setting, const std::string& text, const std::string& origin,
           Options& options) {
+    // Nothing has set it before; what a config file says of it will not count.
+    if (text == "default" && setting.name != "scene") return;
     const std::string problem = setting.read(options, text);
     if (!problem.empty()) throw UsageError(fmt::format("{}: {}", origin, problem));
 }
@@ -30,8 +33,9 @@ void add_to(CLI::App& app, const Setting& setting, Options& options) {
     };
     const std::string name = setting.command_line_name();
     if (setting.form.empty()) {
-        app.add_flag_callback(
-            name, [take_over] { take_over("true"); }, setting.description);
+        app.add_flag_function(
+            name, [take_over](std::int64_t count) { take_over(count > 0 ? "true" : "false"); },
+            setting.description);
     } else {
         app.add_option_function<std::string>(name, take_over, setting.description)
             ->type_name(setting.form);
@@ -59,6 +63,10 @@ void apply_config(const std::filesystem::path& path, const std::vector<Setting>&
 void require_sense(const Options& options) {
     if (options.list_devices || options.list_views) return;
     if (options.scene.empty()) throw UsageError("no scene is given; see --help");
+    if (options.output && !image_kind(*options.output)) {
+        throw UsageError(
+            fmt::format("--output: '{}' ends in neither .png nor .exr", options.output->string()));
+    }
     if (!options.output && (options.stats || options.bench_frames > 0 || options.frames)) {
         throw UsageError("--stats, --bench and --frames need --output");
     }
@@ -93,7 +101,8 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
     for (const Setting& setting : settings) add_to(app, setting, options);
     std::optional<std::filesystem::path> config;
     app.add_option("--config", config,
-                   "read options from a file of `name = value` lines; the command line wins")
+                   "read options from a file of `name = value` lines; the command line wins, and "
+                   "--NAME default or --FLAG=false undoes")
         ->type_name("FILE.toml");
     try {
         app.parse(argc, argv);
@@ -102,6 +111,9 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
         throw UsageError(error.what());
+    } catch (const std::logic_error&) {
+        // CLI11 leaves it to std::stoll.
+        throw UsageError("a switch with '=' is followed by true or false");
     }
     if (config) {
         apply_config(*config, settings, app, options);

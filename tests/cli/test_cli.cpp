@@ -107,6 +107,7 @@ TEST_F(Cli, BakeRefusesWrongUsage) {
     } table[] = {
         {{}, {"INPUT"}},
         {{"scene.obj", "--bogus"}, {"--bogus"}},
+        {{"scene.obj", "--strict=maybe"}, {"true or false"}},
         {{"scene.obj", "another.obj"}, {"another.obj"}},
         {{"scene.obj", "-o"}, {"--output"}},
         {{"scene.obj", "--up", "x"}, {"--up", "'x'"}},
@@ -189,9 +190,15 @@ TEST_F(Cli, OutputsThatCannotBeWrittenAreRefused) {
     expect_refusal("cw2-bake", 1, {"scene.obj", "-o", "folder"}, {"folder: ", "directory"});
     expect_refusal("cw2", 1, {"scene.cw2mesh", "--output", "folder.png"},
                    {"folder.png: ", "directory"});
+    // Told before a picture is drawn: there is none of the first frames.
+    fs::create_directory(here("frames0"));
+    expect_refusal("cw2", 1, {"scene.cw2mesh", "--output", "frames%d/a.png", "--frames", "2"},
+                   {"frames1/a.png: "});
+    EXPECT_TRUE(fs::is_empty(here("frames0")));
+    // Not even a scene is looked at.
     for (const std::string name : {"out.jpg", "out", "existing.cw2mesh"}) {
-        expect_refusal("cw2", 1, {"scene.cw2mesh", "--output", name},
-                       {name + ": ", ".png", ".exr"});
+        expect_refusal("cw2", 2, {"missing.cw2mesh", "--output", name},
+                       {'\'' + name + '\'', ".png", ".exr"});
     }
 }
 
@@ -245,6 +252,7 @@ TEST_F(Cli, Cw2RefusesWrongUsage) {
         {{"--frames", "1", "--orbit", "moon"}, {"--orbit", "moon"}},
         {{"--orbit", "light"}, {"--orbit", "--frames"}},
         {{"another.cw2mesh"}, {"another.cw2mesh"}},
+        {{"--no-normal-map=maybe"}, {"true or false"}},
     };
     for (const auto& [options, parts] : table) {
         Words arguments{"--output", "existing.png"};

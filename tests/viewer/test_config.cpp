@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cw2/config.h"
+#include "cw2/option_table.h"
 #include "cw2/options.h"
 #include "mesh-format/io.h"
 #include "tests/support/temporary_folder.h"
@@ -38,7 +39,7 @@ class RandomOptions {
     Options make() {
         Options options;
         options.scene = text();
-        options.output = text() + ".png";
+        options.output = text() + "x.png";
         options.size = {1 + below(20000), 1 + below(20000)};
         options.view = below(interop::kViewCount);
         maybe([&] { options.split = {side(), side()}; });
@@ -159,6 +160,25 @@ TEST(Config, TheCommandLineWins) {
     EXPECT_EQ(options->view, interop::kViewNormal);
     EXPECT_FALSE(options->normal_map);
     EXPECT_FALSE(options->alpha_mask);
+}
+
+TEST(Config, TheCommandLineUndoesWhateverAFileSays) {
+    const TemporaryFolder folder;
+    Options none;
+    none.scene = "scene.cw2mesh";
+    RandomOptions random(2);
+    for (int i = 0; i < 20; ++i) {
+        write_config(folder / "a.toml", random.make());
+        Words words{"scene.cw2mesh", "--config", folder / "a.toml"};
+        for (const Setting& setting : all_settings()) {
+            if (setting.name == "scene") continue;
+            words.push_back("--" + setting.name + (setting.form.empty() ? "=false" : ""));
+            if (!setting.form.empty()) words.push_back("default");
+        }
+        const auto options = parse(words);
+        ASSERT_TRUE(options.has_value());
+        EXPECT_TRUE(*options == none);
+    }
 }
 
 TEST(Config, AViewOfTheCommandLineWinsOverASplit) {
