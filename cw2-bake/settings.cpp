@@ -87,9 +87,6 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
         throw UsageError(error.what());
-    } catch (const std::logic_error&) {
-        // CLI11 leaves it to std::stoll.
-        throw UsageError("a switch with '=' is followed by true or false");
     }
     if (settings.json && !settings.inspect) throw UsageError("--json needs --inspect");
     if (settings.output.empty()) {

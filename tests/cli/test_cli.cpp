@@ -107,7 +107,7 @@ TEST_F(Cli, BakeRefusesWrongUsage) {
     } table[] = {
         {{}, {"INPUT"}},
         {{"scene.obj", "--bogus"}, {"--bogus"}},
-        {{"scene.obj", "--strict=maybe"}, {"true or false"}},
+        {{"scene.obj", "--strict=maybe"}, {"--strict"}},
         {{"scene.obj", "another.obj"}, {"another.obj"}},
         {{"scene.obj", "-o"}, {"--output"}},
         {{"scene.obj", "--up", "x"}, {"--up", "'x'"}},
