@@ -217,10 +217,10 @@ std::string bake(const Settings& settings, const Warn& warn) {
     std::vector<Corner>().swap(scene.corners);  // now in the framed triangles
     clock.end("tangents");
     const FramedScene framed_scene{scene, framed};
-    const std::vector<ChunkedMesh> meshes = make_chunks(framed_scene, budgets);
+    const ChunkedScene chunked = make_chunks(framed_scene, budgets);
     clock.end("chunks");
     PackedGeometry geometry =
-        quantise(framed_scene, meshes, budgets, {settings.frame_form, settings.position_form});
+        quantise(framed_scene, chunked, budgets, {settings.frame_form, settings.position_form});
     add_start(scene, geometry.scene);
     const Tables tables = make_tables(scene.materials, textures);
     clock.end("pack");
@@ -248,7 +248,8 @@ std::string bake(const Settings& settings, const Warn& warn) {
     clock.end("write");
     if (settings.depfile) write_depfile(*settings.depfile, settings.output, inputs);
     if (settings.stats)
-        write_stats(settings, {bytes, measure(framed_scene, meshes), geometry.scene, clock});
+        write_stats(settings,
+                    {bytes, measure(framed_scene, chunked.meshes), geometry.scene, clock});
     if (exports) return export_summary(settings, document, bytes);
     return fmt::format("{}\n{}{}", settings.output.string(), summary(document, bytes),
                        taken_over(textures));

@@ -1,35 +1,21 @@
 #include "cw2-bake/chunk_bounds.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+
+#include "mesh-format/every_cpu.h"
 
 namespace bake {
 namespace {
 
 using glm::dvec3;
 
-/// Of length 1; zero if the triangle has no area.
-dvec3 normal_of(std::span<const glm::vec3> positions, std::span<const std::uint16_t> triangle) {
-    const dvec3 origin(positions[triangle[0]]);
-    const dvec3 normal =
-        glm::cross(dvec3(positions[triangle[1]]) - origin, dvec3(positions[triangle[2]]) - origin);
-    const double length = glm::length(normal);
-    return length > 0.0 ? normal / length : dvec3(0.0);
-}
-
 /// A sphere about the middle of the bounding box.
-void bound_by_sphere(std::span<const glm::vec3> positions, mesh_format::ChunkRecord& record) {
-    glm::vec3 low(std::numeric_limits<float>::infinity());
-    glm::vec3 high = -low;
-    for (const glm::vec3& position : positions) {
-        low = glm::min(low, position);
-        high = glm::max(high, position);
-    }
-    const glm::vec3 center = 0.5f * low + 0.5f * high;
+void bound_by_sphere(const Box<glm::vec3>& box, std::span<const glm::vec3> positions,
+                     mesh_format::ChunkRecord& record) {
+    const glm::vec3 center = 0.5f * box.low + 0.5f * box.high;
     double square_radius = 0.0;
     for (const glm::vec3& position : positions) {
         const dvec3 arm = dvec3(position) - dvec3(center);
@@ -40,6 +26,76 @@ void bound_by_sphere(std::span<const glm::vec3> positions, mesh_format::ChunkRec
     record.radius = std::nextafter(radius, std::numeric_limits<float>::max());
 }
 
+constexpr std::size_t kLanes = 8;
+
+/// The normals of triangles, each of length 1, or zero if the triangle has no area; zeros behind
+/// them up to a multiple of kLanes.
+struct Normals {
+    double axis[3][mesh_format::kMaxChunkTriangles];
+    std::size_t padded_count = 0;
+};
+static_assert(mesh_format::kMaxChunkTriangles % kLanes == 0);
+
+/// Coordinates of the corners of some triangles; those that are none lie in the origin.
+struct CornerLanes {
+    float corner[3][3][kLanes];
+
+    CornerLanes(std::span<const glm::vec3> positions, std::span<const std::uint16_t> indices) {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const bool exists = 3 * i < indices.size();
+                const glm::vec3 position = exists ? positions[indices[3 * i + k]] : glm::vec3(0.0f);
+                for (int c = 0; c < 3; ++c) corner[k][c][i] = position[c];
+            }
+        }
+    }
+};
+
+CW2_INLINE void normals_of(const CornerLanes& lanes, std::size_t first, Normals& normals) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const auto side = [&](int k, int c) {
+            return double{lanes.corner[k][c][i]} - double{lanes.corner[0][c][i]};
+        };
+        const double ax = side(1, 0), ay = side(1, 1), az = side(1, 2);
+        const double bx = side(2, 0), by = side(2, 1), bz = side(2, 2);
+        const double x = ay * bz - by * az;
+        const double y = az * bx - bz * ax;
+        const double z = ax * by - bx * ay;
+        const double length = std::sqrt(x * x + y * y + z * z);
+        const bool has_area = length > 0.0;
+        const double divisor = has_area ? length : 1.0;
+        normals.axis[0][first + i] = has_area ? x / divisor : 0.0;
+        normals.axis[1][first + i] = has_area ? y / divisor : 0.0;
+        normals.axis[2][first + i] = has_area ? z / divisor : 0.0;
+    }
+}
+
+CW2_EVERY_CPU void make_normals(std::span<const glm::vec3> positions,
+                                std::span<const std::uint16_t> indices, Normals& normals) {
+    const std::size_t count = indices.size() / 3;
+    std::size_t first = 0;
+    for (; first < count; first += kLanes)
+        normals_of(CornerLanes(positions, indices.subspan(3 * first)), first, normals);
+    normals.padded_count = first;
+}
+
+/// The least cosine of a normal to `axis`; a triangle without area is seen from nowhere.
+CW2_EVERY_CPU double least_cosine(const Normals& normals, const glm::vec3& axis) {
+    double least[kLanes];
+    std::fill_n(least, kLanes, 1.0);
+    for (std::size_t first = 0; first < normals.padded_count; first += kLanes) {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const double x = normals.axis[0][first + i];
+            const double y = normals.axis[1][first + i];
+            const double z = normals.axis[2][first + i];
+            const bool has_area = (x != 0.0) | (y != 0.0) | (z != 0.0);
+            const double cosine = has_area ? x * axis.x + y * axis.y + z * axis.z : 1.0;
+            least[i] = cosine < least[i] ? cosine : least[i];
+        }
+    }
+    return *std::min_element(least, least + kLanes);
+}
+
 /// The cone of the normals about their mean. With d the least cosine of a normal to the axis, the
 /// cutoff is sqrt(1 - d^2), see ChunkRecord.
 void bound_by_cone(std::span<const glm::vec3> positions, std::span<const std::uint16_t> indices,
@@ -47,21 +103,15 @@ void bound_by_cone(std::span<const glm::vec3> positions, std::span<const std::ui
     // Wider cones reject next to nothing.
     constexpr double kWidest = 0.1;
     record.cone_cutoff = 1.0f;
-    std::array<dvec3, mesh_format::kMaxChunkTriangles> normals;
-    const std::size_t count = indices.size() / 3;
+    Normals normals;
+    make_normals(positions, indices, normals);
     dvec3 sum(0.0);
-    for (std::size_t i = 0; i < count; ++i) {
-        normals[i] = normal_of(positions, indices.subspan(3 * i, 3));
-        sum += normals[i];
-    }
+    for (std::size_t i = 0; i < normals.padded_count; ++i)
+        sum += dvec3(normals.axis[0][i], normals.axis[1][i], normals.axis[2][i]);
     const double length = glm::length(sum);
     if (!(length > 0.0)) return;
     const glm::vec3 axis(sum / length);
-    double least = 1.0;
-    for (std::size_t i = 0; i < count; ++i) {
-        // A triangle without area is seen from nowhere.
-        if (normals[i] != dvec3(0.0)) least = std::min(least, glm::dot(normals[i], dvec3(axis)));
-    }
+    const double least = least_cosine(normals, axis);
     if (least <= kWidest) return;
     for (int k = 0; k < 3; ++k) record.cone_axis[k] = axis[k];
     // More than what rounding to floats may have taken from it.
@@ -72,10 +122,11 @@ void bound_by_cone(std::span<const glm::vec3> positions, std::span<const std::ui
 
 }  // namespace
 
-mesh_format::ChunkRecord bound_chunk(std::span<const glm::vec3> positions,
+mesh_format::ChunkRecord bound_chunk(const Box<glm::vec3>& box,
+                                     std::span<const glm::vec3> positions,
                                      std::span<const std::uint16_t> indices) {
     mesh_format::ChunkRecord record{};
-    bound_by_sphere(positions, record);
+    bound_by_sphere(box, positions, record);
     bound_by_cone(positions, indices, record);
     return record;
 }

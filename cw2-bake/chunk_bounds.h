@@ -5,13 +5,15 @@
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "cw2-bake/chunks.h"
 #include "mesh-format/layout.h"
 
 namespace bake {
 
 /// The sphere and the cone of at most kMaxChunkTriangles triangles over `positions`, all of which
-/// they use; the index range is left 0.
-mesh_format::ChunkRecord bound_chunk(std::span<const glm::vec3> positions,
+/// they use and which `box` bounds; the index range is left 0.
+mesh_format::ChunkRecord bound_chunk(const Box<glm::vec3>& box,
+                                     std::span<const glm::vec3> positions,
                                      std::span<const std::uint16_t> indices);
 
 }  // namespace bake

@@ -11,7 +11,7 @@
 
 namespace bake {
 
-struct CentredTriangle {
+struct alignas(16) CentredTriangle {
     glm::vec3 centroid;  ///< times 3/4
     std::uint32_t index;
 };

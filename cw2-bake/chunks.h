@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "cw2-bake/raw_vector.h"
 #include "cw2-bake/source_scene.h"
 #include "cw2-bake/tangents.h"
 #include "mesh-format/layout.h"
@@ -62,10 +63,15 @@ struct Box {
 struct ChunkedMesh {
     std::uint32_t material = 0;
     std::vector<std::uint32_t> vertices;  ///< in FramedTriangles::vertices
-    std::vector<std::uint16_t> indices;   ///< into `vertices`
+    std::span<std::uint16_t> indices;     ///< into `vertices`; part of ChunkedScene::indices
     std::vector<mesh_format::ChunkRecord> chunks;
     Box<glm::vec3> positions;
     Box<glm::vec2> uvs;
+};
+
+struct ChunkedScene {
+    std::vector<ChunkedMesh> meshes;
+    RawVector<std::uint16_t> indices;  ///< of all meshes, mesh after mesh
 };
 
 /// Cuts the triangles of each material by halving them at the median of their longest side until at
@@ -73,6 +79,6 @@ struct ChunkedMesh {
 /// chunk's UVs within the material's budget; then orders each chunk's triangles for the vertex
 /// cache. Neighbouring chunks share a mesh as long as its vertices and its UVs allow. The meshes
 /// come in the order of their materials.
-std::vector<ChunkedMesh> make_chunks(const FramedScene& scene, std::span<const UvBudget> budgets);
+ChunkedScene make_chunks(const FramedScene& scene, std::span<const UvBudget> budgets);
 
 }  // namespace bake

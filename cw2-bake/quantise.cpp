@@ -282,14 +282,13 @@ double largest_square_distance(const FramedScene& scene, std::span<const std::ui
     return largest;
 }
 
-/// Appends the mesh's part of the sections that are no vertices. `position_error` is how far a
+/// Appends the mesh's part of the section of chunks. `position_error` is how far a
 /// decoded position may lie from its source.
 void append_chunks(const ChunkedMesh& mesh, double position_error, PackedGeometry& geometry) {
     for (mesh_format::ChunkRecord chunk : mesh.chunks) {
         chunk.radius += static_cast<float>(position_error);
         geometry.chunks.push_back(chunk);
     }
-    geometry.indices.insert(geometry.indices.end(), mesh.indices.begin(), mesh.indices.end());
 }
 
 Box<glm::vec3> decoded_box(std::span<const MeshRecord> records) {
@@ -329,9 +328,11 @@ void finish_scene(PackedGeometry& geometry, const Box<glm::vec3>& box,
 
 }  // namespace
 
-PackedGeometry quantise(const FramedScene& scene, std::span<const ChunkedMesh> meshes,
+PackedGeometry quantise(const FramedScene& scene, const ChunkedScene& chunked,
                         std::span<const UvBudget> materials, const QuantiseSettings& settings) {
+    const std::span<const ChunkedMesh> meshes = chunked.meshes;
     PackedGeometry geometry;
+    geometry.indices = chunked.indices;
     const bool exact = settings.position_form == PositionForm::f32;
     const double step = exact ? 0.0 : position_step(meshes);
     geometry.scene.position_step = static_cast<float>(step);
@@ -349,8 +350,6 @@ PackedGeometry quantise(const FramedScene& scene, std::span<const ChunkedMesh> m
         packers.emplace_back(scene, meshes[i], materials[meshes[i].material], step, record);
     }
     geometry.vertices.resize(lay_out(meshes, geometry.meshes));
-    geometry.indices.reserve(geometry.meshes.back().first_index +
-                             geometry.meshes.back().index_count);
 
     const Box<glm::vec3> box = decoded_box(geometry.meshes);
     const glm::dvec3 center = 0.5 * (glm::dvec3(box.low) + glm::dvec3(box.high));
@@ -372,7 +371,6 @@ PackedGeometry quantise(const FramedScene& scene, std::span<const ChunkedMesh> m
     finish_scene(geometry, box, blocks);
     for (const ChunkedMesh& mesh : meshes)
         append_chunks(mesh, geometry.scene.position_error, geometry);
-    geometry.scene.index_count = geometry.indices.size();
     return geometry;
 }
 

@@ -22,15 +22,15 @@ struct PackedGeometry {
     std::vector<mesh_format::MeshRecord> meshes;  ///< as the input, in its order
     std::vector<mesh_format::ChunkRecord> chunks;
     std::vector<std::byte> vertices;
-    std::vector<std::uint16_t> indices;
+    std::span<const std::uint16_t> indices;  ///< the input's
 };
 
-/// Packs `meshes`, which together are the scene. `materials` has an entry for each material.
+/// Packs meshes that together are the scene. `materials` has an entry for each material.
 ///
 /// Positions go to one lattice of a power-of-two step, the finest on which every mesh spans at
 /// most 65,536 points and every coordinate stays below 2^24 steps from the origin. UVs go to a
 /// lattice for each mesh; where half its step exceeds 1/8 texel the mesh keeps float UVs.
-PackedGeometry quantise(const FramedScene& scene, std::span<const ChunkedMesh> meshes,
+PackedGeometry quantise(const FramedScene& scene, const ChunkedScene& chunked,
                         std::span<const UvBudget> materials, const QuantiseSettings& settings);
 
 }  // namespace bake

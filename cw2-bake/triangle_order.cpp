@@ -1,63 +1,68 @@
 #include "cw2-bake/triangle_order.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace bake {
 
 void TriangleOrder::list_triangles(std::span<const std::uint16_t> indices,
                                    std::size_t vertex_count) {
-    left_.assign(vertex_count, 0);
+    std::fill_n(left_.begin(), vertex_count, std::uint16_t{0});
     for (const std::uint16_t index : indices) ++left_[index];
-    first_.resize(vertex_count);
     std::uint16_t sum = 0;
     for (std::size_t v = 0; v < vertex_count; ++v) {
-        first_[v] = sum;
         sum = static_cast<std::uint16_t>(sum + left_[v]);
+        first_[v] = sum;
     }
-    triangles_.resize(indices.size());
-    for (std::size_t i = 0; i < indices.size(); ++i)
-        triangles_[first_[indices[i]]++] = static_cast<std::uint16_t>(i / 3);
-    for (std::size_t v = 0; v < vertex_count; ++v)
-        first_[v] = static_cast<std::uint16_t>(first_[v] - left_[v]);
+    first_[vertex_count] = sum;
+    // Backwards, so that each vertex's triangles ascend and first_ ends at the first.
+    for (std::size_t triangle = indices.size() / 3; triangle-- > 0;) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            triangles_[--first_[indices[3 * triangle + corner]]] =
+                static_cast<std::uint16_t>(triangle);
+        }
+    }
 }
 
 void TriangleOrder::emit_around(std::uint16_t vertex, std::span<const std::uint16_t> indices) {
-    candidates_.clear();
-    const std::size_t begin = first_[vertex];
-    const std::size_t end = vertex + 1u < first_.size() ? first_[vertex + 1] : triangles_.size();
-    for (std::size_t i = begin; i < end; ++i) {
+    std::size_t used = candidates_ = recent_count_;
+    std::uint32_t time = time_;
+    const std::size_t end = first_[vertex + 1u];
+    for (std::size_t i = first_[vertex]; i < end; ++i) {
         const std::uint16_t triangle = triangles_[i];
         if (done_[triangle]) continue;
         done_[triangle] = true;
-        result_.push_back(triangle);
+        result_[result_count_++] = triangle;
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const std::uint16_t v = indices[3 * std::size_t{triangle} + corner];
-            candidates_.push_back(v);
-            recent_.push_back(v);
+            // No branches on what no one can predict.
+            recent_[used] = v;
+            used += v != vertex;  // which will be done
             --left_[v];
-            if (time_ - entered_[v] > kCacheSize) entered_[v] = time_++;
+            const bool enters = time - entered_[v] > kCacheSize;
+            entered_[v] = enters ? static_cast<std::uint16_t>(time) : entered_[v];
+            time += enters;
         }
     }
+    recent_count_ = used;
+    time_ = time;
 }
 
 /// The vertex in the cache that entered it first and will still be there once its own triangles
 /// are drawn; else one used lately; else the first that is left. kNone if none is.
 std::uint16_t TriangleOrder::next_vertex(std::size_t vertex_count) {
-    std::uint16_t best = kNone;
-    std::uint32_t best_age = 0;
-    for (const std::uint16_t v : candidates_) {
-        if (left_[v] == 0) continue;
+    // A score, and below it a number that is larger for vertices that come earlier.
+    std::uint32_t best = 0xFFFF;
+    for (std::size_t i = candidates_; i < recent_count_; ++i) {
+        const std::uint16_t v = recent_[i];
         const std::uint32_t age = time_ - entered_[v];
-        const std::uint32_t score = age + 2u * left_[v] <= kCacheSize ? age + 1 : 1;
-        if (score > best_age) {
-            best_age = score;
-            best = v;
-        }
+        const std::uint32_t stays = age + 2u * left_[v] <= kCacheSize ? age + 1 : 1;
+        const std::uint32_t score = left_[v] > 0 ? stays : 0;
+        best = std::max(best, score << 16 | static_cast<std::uint32_t>(0xFFFF - i));
     }
-    if (best != kNone) return best;
-    while (!recent_.empty()) {
-        const std::uint16_t v = recent_.back();
-        recent_.pop_back();
+    if (best > 0xFFFF) return recent_[0xFFFF - (best & 0xFFFF)];
+    while (recent_count_ > 0) {
+        const std::uint16_t v = recent_[--recent_count_];
         if (left_[v] > 0) return v;
     }
     for (; scan_ < vertex_count; ++scan_)
@@ -67,18 +72,16 @@ std::uint16_t TriangleOrder::next_vertex(std::size_t vertex_count) {
 
 std::span<const std::uint16_t> TriangleOrder::order(std::span<const std::uint16_t> indices,
                                                     std::size_t vertex_count) {
-    assert(indices.size() < 0x10000 && vertex_count < kNone);
+    assert(indices.size() <= kMaxCorners && vertex_count <= kMaxCorners);
     list_triangles(indices, vertex_count);
-    entered_.assign(vertex_count, 0);
     time_ = kCacheSize + 1;
-    done_.assign(indices.size() / 3, false);
-    recent_.clear();
-    result_.clear();
+    std::fill_n(entered_.begin(), vertex_count, std::uint16_t{0});
+    std::fill_n(done_.begin(), indices.size() / 3, false);
+    recent_count_ = candidates_ = result_count_ = 0;
     scan_ = 0;
-    candidates_.clear();
     for (std::uint16_t v = next_vertex(vertex_count); v != kNone; v = next_vertex(vertex_count))
         emit_around(v, indices);
-    return result_;
+    return std::span(result_).first(result_count_);
 }
 
 }  // namespace bake

@@ -1,9 +1,11 @@
 // The order of a chunk's triangles that suits the caches of vertices on GPUs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
+
+#include "mesh-format/layout.h"
 
 namespace bake {
 
@@ -14,8 +16,8 @@ class TriangleOrder {
  public:
     static constexpr std::uint32_t kCacheSize = 16;
 
-    /// The triangles over vertices 0 .. vertex_count - 1 in their best order: their numbers, valid
-    /// until the next call. At most 65,536 corners.
+    /// The triangles over vertices 0 .. vertex_count - 1, at most kMaxChunkTriangles and three
+    /// vertices for each, in their best order: their numbers, valid until the next call.
     std::span<const std::uint16_t> order(std::span<const std::uint16_t> indices,
                                          std::size_t vertex_count);
 
@@ -25,15 +27,22 @@ class TriangleOrder {
     std::uint16_t next_vertex(std::size_t vertex_count);
 
     static constexpr std::uint16_t kNone = 0xFFFF;
+    static constexpr std::size_t kMaxTriangles = mesh_format::kMaxChunkTriangles;
+    static constexpr std::size_t kMaxCorners = 3 * kMaxTriangles;
 
-    std::vector<std::uint16_t> first_;      // by vertex, where its triangles start in triangles_
-    std::vector<std::uint16_t> triangles_;  // by vertex
-    std::vector<std::uint16_t> left_;       // by vertex, its triangles that are not ordered yet
-    std::vector<std::uint32_t> entered_;    // by vertex, when it entered the cache
-    std::vector<bool> done_;                // by triangle
-    std::vector<std::uint16_t> recent_;     // vertices used, the last one last
-    std::vector<std::uint16_t> candidates_;
-    std::vector<std::uint16_t> result_;
+    template <std::size_t kSize>
+    using Numbers = std::array<std::uint16_t, kSize>;
+
+    Numbers<kMaxCorners + 1> first_;        // by vertex, where its triangles start in triangles_
+    Numbers<kMaxCorners> triangles_;        // by vertex
+    Numbers<kMaxCorners> left_;             // by vertex, its triangles that are not ordered yet
+    Numbers<kMaxCorners> entered_;          // by vertex, when it entered the cache
+    std::array<bool, kMaxTriangles> done_;  // by triangle
+    Numbers<kMaxCorners + 1> recent_;       // vertices used, the last one last
+    std::size_t recent_count_ = 0;
+    std::size_t candidates_ = 0;  // where in recent_ those start that were used just now
+    Numbers<kMaxTriangles> result_;
+    std::size_t result_count_ = 0;
     std::uint32_t time_ = 0;  // counts what enters the cache
     std::uint16_t scan_ = 0;  // all vertices before it are done
 };

@@ -17,10 +17,10 @@ struct Sheet {
     bake::FramedTriangles framed;
 
     bake::FramedScene scene() const { return {source, framed}; }
-    std::vector<bake::ChunkedMesh> chunks(const bake::UvBudget& budget = {}) const {
+    bake::ChunkedScene chunks(const bake::UvBudget& budget = {}) const {
         return bake::make_chunks(scene(), {&budget, 1});
     }
-    bake::PackedGeometry packed(const std::vector<bake::ChunkedMesh>& pieces,
+    bake::PackedGeometry packed(const bake::ChunkedScene& pieces,
                                 const bake::UvBudget& budget = {}) const {
         return bake::quantise(
             scene(), pieces, {&budget, 1},
@@ -85,7 +85,8 @@ TEST(Chunks, KeepEveryTriangleAndItsWinding) {
     const auto& indices = sheet.framed.indices;
     for (std::size_t i = 0; i < indices.size(); i += 3)
         before.push_back(face_of(sheet.scene(), {indices[i], indices[i + 1], indices[i + 2]}));
-    for (const bake::ChunkedMesh& piece : sheet.chunks()) {
+    const auto pieces = sheet.chunks();
+    for (const bake::ChunkedMesh& piece : pieces.meshes) {
         for (std::size_t i = 0; i < piece.indices.size(); i += 3) {
             after.push_back(face_of(sheet.scene(), {piece.vertices[piece.indices[i]],
                                                     piece.vertices[piece.indices[i + 1]],
@@ -100,8 +101,8 @@ TEST(Chunks, KeepEveryTriangleAndItsWinding) {
 TEST(Chunks, StayWithinTheLimitsAndFollowEachOther) {
     const Sheet sheet = make_sheet(300);
     const auto pieces = sheet.chunks();
-    EXPECT_EQ(pieces.size(), 2u);  // 90,601 vertices
-    for (const bake::ChunkedMesh& piece : pieces) {
+    EXPECT_EQ(pieces.meshes.size(), 2u);  // 90,601 vertices
+    for (const bake::ChunkedMesh& piece : pieces.meshes) {
         EXPECT_LE(piece.vertices.size(), mesh_format::kMaxMeshVertices);
         std::uint32_t next = 0;
         for (const mesh_format::ChunkRecord& chunk : piece.chunks) {
@@ -123,7 +124,8 @@ TEST(Chunks, StayWithinTheLimitsAndFollowEachOther) {
 TEST(Chunks, AreTightInSpace) {
     // 180,000 triangles are halved nine times: chunks of 1/16 by 1/32 of the sheet.
     const Sheet sheet = make_sheet(300);
-    for (const bake::ChunkedMesh& piece : sheet.chunks()) {
+    const auto pieces = sheet.chunks();
+    for (const bake::ChunkedMesh& piece : pieces.meshes) {
         for (const mesh_format::ChunkRecord& chunk : piece.chunks) {
             glm::vec3 low(1e9f), high(-1e9f);
             for (std::uint32_t i = 0; i < chunk.index_count; ++i) {
@@ -143,8 +145,8 @@ TEST(Chunks, ShareAMeshOnlyWhere16BitsHoldTheirUvs) {
     for (glm::vec2& uv : sheet.source.uvs) uv *= 50.0f;  // a lattice of 1/4096 spans 16
     const bake::UvBudget budget{.texels = 1024};
     const auto pieces = sheet.chunks(budget);
-    EXPECT_GT(pieces.size(), 10u);
-    EXPECT_LT(pieces.size(), 40u);
+    EXPECT_GT(pieces.meshes.size(), 10u);
+    EXPECT_LT(pieces.meshes.size(), 40u);
     const auto packed = sheet.packed(pieces, budget);
     for (const mesh_format::MeshRecord& mesh : packed.meshes) {
         EXPECT_EQ(mesh.uv_form, mesh_format::UvForm::quantised);
@@ -169,7 +171,7 @@ TEST(Chunks, SpheresHoldTheirVertices) {
     const auto pieces = sheet.chunks();
     const bake::PackedGeometry packed = sheet.packed(pieces);
     std::size_t record = 0;
-    for (const bake::ChunkedMesh& piece : pieces) {
+    for (const bake::ChunkedMesh& piece : pieces.meshes) {
         for (const mesh_format::ChunkRecord& chunk : piece.chunks) {
             const mesh_format::ChunkRecord& bounds = packed.chunks[record++];
             const glm::vec3 center(bounds.center[0], bounds.center[1], bounds.center[2]);
@@ -193,7 +195,7 @@ TEST(Chunks, CamerasThatAConeRejectsSeeNoFrontFace) {
     for (int round = 0; round < 200; ++round) {
         const glm::vec3 camera(coordinate(random), coordinate(random), coordinate(random));
         std::size_t record = 0;
-        for (const bake::ChunkedMesh& piece : pieces) {
+        for (const bake::ChunkedMesh& piece : pieces.meshes) {
             for (const mesh_format::ChunkRecord& chunk : piece.chunks) {
                 const mesh_format::ChunkRecord& bounds = packed.chunks[record++];
                 const glm::vec3 arm =

@@ -20,34 +20,39 @@ using mesh_format::UvForm;
 struct Scene {
     bake::SourceScene source;
     bake::FramedTriangles framed;
-    std::vector<bake::ChunkedMesh> meshes;
+    bake::ChunkedScene chunked;
 
     void add(const std::vector<glm::vec3>& positions, const std::vector<glm::vec2>& uvs) {
-        bake::ChunkedMesh& mesh = meshes.emplace_back();
+        bake::ChunkedMesh& mesh = chunked.meshes.emplace_back();
         for (std::size_t i = 0; i < positions.size(); ++i) {
             const auto vertex = static_cast<std::uint32_t>(framed.vertices.size());
             source.positions.push_back(positions[i]);
             source.uvs.emplace_back(uvs[i].x, 1.0f - uvs[i].y);
             framed.vertices.push_back({{vertex, 0, vertex}, {1.0f, 0.0f, 0.0f, -1.0f}});
             mesh.vertices.push_back(vertex);
-            mesh.indices.push_back(static_cast<std::uint16_t>(i));
+            chunked.indices.push_back(static_cast<std::uint16_t>(i));
             mesh.positions.add(positions[i]);
-            mesh.uvs.add(uv(meshes.size() - 1, i));
+            mesh.uvs.add(uv(chunked.meshes.size() - 1, i));
         }
         mesh.chunks.push_back(
-            {.first_index = 0, .index_count = static_cast<std::uint32_t>(mesh.indices.size())});
+            {.first_index = 0, .index_count = static_cast<std::uint32_t>(positions.size())});
+        std::span<std::uint16_t> rest = chunked.indices;
+        for (bake::ChunkedMesh& each : chunked.meshes) {
+            each.indices = rest.first(each.vertices.size());
+            rest = rest.subspan(each.vertices.size());
+        }
     }
     const glm::vec3& position(std::size_t mesh, std::size_t i) const {
-        return bake::FramedScene{source, framed}.position(meshes[mesh].vertices[i]);
+        return bake::FramedScene{source, framed}.position(chunked.meshes[mesh].vertices[i]);
     }
     /// Which 1 - v may have rounded.
     glm::vec2 uv(std::size_t mesh, std::size_t i) const {
-        return bake::FramedScene{source, framed}.uv(meshes[mesh].vertices[i]);
+        return bake::FramedScene{source, framed}.uv(chunked.meshes[mesh].vertices[i]);
     }
     bake::PackedGeometry pack(const bake::UvBudget& budget = {},
                               const bake::QuantiseSettings& settings = {
                                   FrameForm::quat48, PositionForm::quantised}) const {
-        return bake::quantise({source, framed}, meshes, {&budget, 1}, settings);
+        return bake::quantise({source, framed}, chunked, {&budget, 1}, settings);
     }
 
     Scene() { source.normals = {{0.0f, 1.0f, 0.0f}}; }
