@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "mesh-format/quoted_text.h"
+
 namespace bake {
 
 namespace {
@@ -14,6 +16,7 @@ using mesh_format::FrameForm;
 using mesh_format::MaterialRecord;
 using mesh_format::MeshRecord;
 using mesh_format::PositionForm;
+using mesh_format::quoted_text;
 using mesh_format::SourceRecord;
 using mesh_format::TextureFormat;
 using mesh_format::TextureRecord;
@@ -103,21 +106,6 @@ std::string position_error(const Document& document, const Counts& counts) {
     if (error == 0.0f) return "0";
     return fmt::format("{:.2g} (1/{} of the extent)", error,
                        grouped(static_cast<std::uint64_t>(counts.extent / error)));
-}
-
-std::string json_text(std::string_view text) {
-    std::string quoted = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') {
-            quoted += '\\';
-            quoted += c;
-        } else if (static_cast<unsigned char>(c) < 0x20) {
-            quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        } else {
-            quoted += c;
-        }
-    }
-    return quoted + '"';
 }
 
 std::string json_texture(std::uint32_t index) {
@@ -291,7 +279,7 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
                 "\"base_color_texture\": {}, "
                 "\"roughness_texture\": {}, \"metalness_texture\": {}, \"normal_texture\": {}, "
                 "\"alpha_mask_texture\": {}}}",
-                json_text(document.text(material.name)), material.base_color[0],
+                quoted_text(document.text(material.name)), material.base_color[0],
                 material.base_color[1], material.base_color[2], material.roughness,
                 material.metalness, material.normal_scale,
                 (material.flags & mesh_format::kCullBack) != 0,
@@ -304,7 +292,7 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
         return fmt::format(
             "{{\"name\": {}, \"format\": \"{}\", \"width\": {}, \"height\": {}, \"mips\": {}, "
             "\"bytes\": {}, \"psnr\": {:.2f}}}",
-            json_text(document.text(texture.name)), name_of(texture.format), texture.width,
+            quoted_text(document.text(texture.name)), name_of(texture.format), texture.width,
             texture.height, texture.mip_count, texture.size, texture.psnr);
     });
     const std::string sources = json_array(document.sources, [](const SourceRecord& source) {

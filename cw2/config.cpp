@@ -59,19 +59,4 @@ std::vector<ConfigEntry> read_config(const std::filesystem::path& path) {
     return entries;
 }
 
-std::string toml_string(std::string_view text) {
-    std::string quoted = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') {
-            quoted += '\\';
-            quoted += c;
-        } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-            quoted += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-        } else {
-            quoted += c;
-        }
-    }
-    return quoted + '"';
-}
-
 }  // namespace cw2

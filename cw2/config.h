@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace cw2 {
@@ -27,8 +26,5 @@ struct ConfigEntry {
 /// knows neither escapes nor lines.) Throws mesh_format::FileError where the file cannot be read,
 /// and UsageError "PATH:LINE: what is wrong".
 std::vector<ConfigEntry> read_config(const std::filesystem::path& path);
-
-/// `text` as a TOML string, quotes included.
-std::string toml_string(std::string_view text);
 
 }  // namespace cw2

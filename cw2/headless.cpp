@@ -18,6 +18,7 @@
 #include "cw2/resources.h"
 #include "cw2/scene.h"
 #include "mesh-format/io.h"
+#include "mesh-format/quoted_text.h"
 
 namespace cw2 {
 
@@ -91,18 +92,14 @@ double median(std::vector<double> values) {
 }
 
 std::string stats_of(const Device& device, const Scene& scene, const Timings& timings) {
-    std::string name;
-    for (const char c : std::string_view(device.properties().deviceName)) {
-        if (c == '"' || c == '\\') name += '\\';
-        name += c;
-    }
     return fmt::format(
-        "{{\n  \"device\": \"{}\",\n  \"triangles\": {},\n  \"draws\": {},\n"
+        "{{\n  \"device\": {},\n  \"triangles\": {},\n  \"draws\": {},\n"
         "  \"load_ms\": {:.3f},\n  \"first_frame_ms\": {:.3f},\n  \"save_ms\": {:.3f},\n"
         "  \"bench_frames\": {},\n  \"median_frame_ms\": {:.3f},\n"
         "  \"median_gpu_ms\": {:.3f}\n}}\n",
-        name, scene.triangle_count(), scene.draws().size(), timings.load, timings.first_frame,
-        timings.save, timings.frames.size(), median(timings.frames), median(timings.gpu_frames));
+        mesh_format::quoted_text(device.properties().deviceName), scene.triangle_count(),
+        scene.draws().size(), timings.load, timings.first_frame, timings.save,
+        timings.frames.size(), median(timings.frames), median(timings.gpu_frames));
 }
 
 /// Saves pictures on a thread of its own, while the next one is drawn.

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "mesh-format/quoted_text.h"
+
 namespace cw2 {
 
 namespace {
@@ -115,10 +117,10 @@ std::string toml_of(const glm::vec3& v) {
     return fmt::format("[{}, {}, {}]", toml_of(v.x), toml_of(v.y), toml_of(v.z));
 }
 std::string toml_of(const std::string& text) {
-    return toml_string(text);
+    return mesh_format::quoted_text(text);
 }
 std::string toml_of(const std::filesystem::path& path) {
-    return path.empty() ? std::string() : toml_string(path.string());
+    return path.empty() ? std::string() : mesh_format::quoted_text(path.string());
 }
 std::string toml_of(const PictureSize& size) {
     return fmt::format("\"{}x{}\"", size.width, size.height);
@@ -178,16 +180,17 @@ Setting flag(const std::string& name, const std::string& description, bool Optio
 }
 
 Setting view_setting() {
-    return {"view", "NAME", "what to show; --list-views names all [shaded]",
-            [](Options& options, const std::string& text) {
-                const std::optional<View> view = view_named(text);
-                if (!view) {
-                    return fmt::format("no view is named '{}'; --list-views names all", text);
-                }
-                options.view = *view;
-                return std::string();
-            },
-            [](const Options& options) { return toml_string(kViewNames[options.view]); }};
+    return {
+        "view", "NAME", "what to show; --list-views names all [shaded]",
+        [](Options& options, const std::string& text) {
+            const std::optional<View> view = view_named(text);
+            if (!view) {
+                return fmt::format("no view is named '{}'; --list-views names all", text);
+            }
+            options.view = *view;
+            return std::string();
+        },
+        [](const Options& options) { return mesh_format::quoted_text(kViewNames[options.view]); }};
 }
 
 template <typename T>

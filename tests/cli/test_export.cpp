@@ -74,6 +74,25 @@ std::vector<std::string> exactly(std::vector<std::string> arguments) {
     return arguments;
 }
 
+TEST_F(Export, NamesThatAreNoUtf8AreValidInJson) {
+    write("gr\xFCn.obj",
+          "mtllib gr\xFCn.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+          "usemtl gr\xFCn\nf 1/1 2/2 3/3\n");
+    std::filesystem::copy(here("mask.png"), here("gr\xFCn.png"));
+    write("gr\xFCn.mtl", "newmtl gr\xFCn\nmap_Kd gr\xFCn.png\n");
+    bake_well({"gr\xFCn.obj", "-o", "gr\xFCn.cw2mesh", "--quiet", "--stats", "stats.json"});
+    const auto names_of = [](const nlohmann::json& json, const char* textures) {
+        return std::vector<std::string>{json.at("materials").at(0).at("name"),
+                                        json.at(textures).at(0).at("name")};
+    };
+    const std::vector<std::string> names{"gr\uFFFDn", "gr\uFFFDn.png"};
+    EXPECT_NO_THROW(nlohmann::json::parse(read("stats.json")));
+    const Outcome inspection = bake({"--inspect", "--json", "gr\xFCn.cw2mesh"});
+    EXPECT_EQ(names_of(nlohmann::json::parse(inspection.out), "textures"), names);
+    bake_well({"gr\xFCn.cw2mesh", "-o", "gr\xFCn.gltf", "--quiet"});
+    EXPECT_EQ(names_of(nlohmann::json::parse(read("gr\xFCn.gltf")), "images"), names);
+}
+
 TEST_F(Export, ComesBackAsItWas) {
     bake_well(exactly({"scene.obj", "-o", "first.cw2mesh"}));
     bake_well({"first.cw2mesh", "-o", "scene.glb", "--quiet"});

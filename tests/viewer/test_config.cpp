@@ -149,6 +149,17 @@ TEST(Config, OptionsThatNobodyGaveRemainSo) {
     EXPECT_TRUE(*parse({"scene.cw2mesh"}) == options);
 }
 
+TEST(Config, APathThatIsNoUtf8LeavesTheRestReadable) {
+    const TemporaryFolder folder;
+    Options options;
+    options.scene = "gr\xFCn.cw2mesh";
+    options.exposure = 1.5f;
+    write_config(folder / "a.toml", options);
+    const auto read = parse({"--config", folder / "a.toml"});
+    EXPECT_EQ(read->scene, "gr\uFFFDn.cw2mesh");
+    EXPECT_EQ(read->exposure, 1.5f);
+}
+
 TEST(Config, TheCommandLineWins) {
     const TemporaryFolder folder;
     std::ofstream(folder / "a.toml")
