@@ -86,6 +86,36 @@ void check_mesh(const Checker& check, const Document& document, std::size_t i) {
     require(ordered(mesh.bounds_min, mesh.bounds_max), "its bounding box is invalid");
 }
 
+/// Whether `count` floats are finite at `offset` in each of the mesh's vertices.
+bool floats_finite(const Document& document, const MeshRecord& mesh, std::uint32_t offset,
+                   std::uint32_t count) {
+    const std::uint32_t stride =
+        vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
+    const std::byte* vertex = document.vertices.data() + mesh.vertex_offset + offset;
+    constexpr std::uint32_t kExponent = 0x7F80'0000;  // all ones in an infinity and in a NaN
+    bool finite = true;
+    for (std::uint32_t i = 0; i < mesh.vertex_count; ++i, vertex += stride) {
+        for (std::uint32_t k = 0; k < count; ++k) {
+            std::uint32_t bits = 0;
+            std::memcpy(&bits, vertex + k * sizeof bits, sizeof bits);
+            finite &= (bits & kExponent) != kExponent;
+        }
+    }
+    return finite;
+}
+
+void check_vertices(const Checker& check, const Document& document, std::size_t i) {
+    const MeshRecord& mesh = document.meshes[i];
+    const VertexLayout layout = vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+    const auto require = [&](bool is_f32, std::uint32_t offset, std::uint32_t count,
+                             const char* what) {
+        check.require(!is_f32 || floats_finite(document, mesh, offset, count), "mesh", i, what);
+    };
+    require(mesh.position_form == PositionForm::f32, 0, 3, "a position is not finite");
+    require(mesh.frame_form == FrameForm::f32, layout.frame_offset, 4, "a frame is not finite");
+    require(mesh.uv_form == UvForm::f32, layout.uv_offset, 2, "a UV is not finite");
+}
+
 void check_indices(const Checker& check, const Document& document, std::size_t i) {
     const MeshRecord& mesh = document.meshes[i];
     std::uint16_t largest = 0;
@@ -221,7 +251,9 @@ void check(const Document& document, std::uint64_t texel_bytes, std::string_view
         vertex_end = mesh.vertex_offset + vertex_bytes(mesh);
         index_end = mesh.first_index + mesh.index_count;
         check_chunks(checker, document, i);
-        if (!document.is_encoded()) check_indices(checker, document, i);
+        if (document.is_encoded()) continue;
+        check_indices(checker, document, i);
+        check_vertices(checker, document, i);
     }
     for (std::size_t i = 0; i < document.materials.size(); ++i) {
         check_material(checker, document, i);

@@ -37,8 +37,8 @@ struct Document {
 };
 
 /// Throws FileError, which calls the document `name`, unless everything in it is in order: every
-/// offset, every index, every number finite where the renderer needs it. The indices of an encoded
-/// document can only be checked once they are decoded.
+/// offset, every index, every 32-bit float finite. The vertices and indices of an encoded document
+/// can only be checked once they are decoded.
 void check(const Document& document, std::string_view name);
 
 /// Whether parse() compares the payloads of textures with their checksums.
@@ -47,17 +47,17 @@ enum class Payloads {
     unchecked,  ///< by who uses one
 };
 
-/// Checks `bytes` completely and returns the document in it: magic, version, sizes, checksums,
-/// and what check() asks. `bytes` starts at
-/// a multiple of 16 and must outlive the document; `name` is used in messages.
-/// Throws FileError; never reads outside `bytes`, allocates nothing that grows with the input.
+/// Checks `bytes` completely and returns the document in it: magic, version, sizes, checksums, and
+/// what check() asks. `bytes` starts at a multiple of 16 and must outlive the document; `name` is
+/// used in messages. Throws FileError; never reads outside `bytes`, allocates nothing that grows
+/// with the input.
 Document parse(std::span<const std::byte> bytes, std::string_view name,
                Payloads payloads = Payloads::checked);
 
-/// Throws FileError unless `document` passes check(), then writes it beside `path`
-/// and renames it, so that `path` holds either its old contents or the whole new file. `payloads`
-/// are those of its textures, one each, and take the place of Document::texels; their checksums
-/// are in the records. The same document gives the same bytes. Returns the file's size in bytes.
+/// Throws FileError unless `document` passes check(), then writes it beside `path` and renames it,
+/// so that `path` holds either its old contents or the whole new file. `payloads` are those of its
+/// textures, one each, and take the place of Document::texels; their checksums are in the records.
+/// The same document gives the same bytes. Returns the file's size in bytes.
 std::uint64_t write(const Document& document, std::span<const std::span<const std::byte>> payloads,
                     const std::filesystem::path& path);
 

@@ -173,6 +173,14 @@ class Forgery {
     }
     SceneRecord& scene() { return record<SceneRecord>(SectionKind::scene); }
     MeshRecord& mesh(std::size_t i) { return record<MeshRecord>(SectionKind::meshes, i); }
+    /// Float `k` of a vertex of a mesh that holds only floats.
+    float& vertex_float(std::size_t of_mesh, std::size_t vertex, std::size_t k) {
+        const MeshRecord& floats = mesh(of_mesh);
+        const std::uint32_t stride =
+            vertex_layout(floats.position_form, floats.frame_form, floats.uv_form).stride;
+        return record<float>(SectionKind::vertices,
+                             (floats.vertex_offset + vertex * stride) / sizeof(float) + k);
+    }
     ChunkRecord& chunk(std::size_t i) { return record<ChunkRecord>(SectionKind::chunks, i); }
     MaterialRecord& material(std::size_t i) {
         return record<MaterialRecord>(SectionKind::materials, i);
