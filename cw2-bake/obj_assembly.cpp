@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <unordered_map>
 
 #include "cw2-bake/diagnostics.h"
@@ -26,7 +27,7 @@ constexpr std::size_t kMaxTriangles = 0xFFFF'FFFFu / 3;
 /// Appends, and makes room as if the rest of the text held nothing else, so that growing never
 /// copies; room that stays untouched costs no memory.
 template <typename T>
-void append(std::vector<T>& all, const std::vector<T>& more, std::size_t more_text_bytes,
+void append(std::vector<T>& all, std::span<const T> more, std::size_t more_text_bytes,
             std::size_t text_bytes_left) {
     if (all.capacity() - all.size() < more.size()) {
         const double elements_per_byte =
@@ -41,6 +42,11 @@ void append(std::vector<T>& all, const std::vector<T>& more, std::size_t more_te
 template <typename T>
 std::uint32_t count32(const std::vector<T>& array) {
     return static_cast<std::uint32_t>(array.size());
+}
+
+std::span<const Corner> corners_of(const ObjChunk& chunk) {
+    static_assert(sizeof(ObjTriangle) == 3 * sizeof(Corner));
+    return {reinterpret_cast<const Corner*>(chunk.triangles.data()), chunk.triangles.size() * 3};
 }
 
 ObjCounts counts_of(const SourceScene& scene) {
@@ -84,10 +90,12 @@ bool Assembly::resolve(ObjChunk& chunk) const {
         good &= place >= kObjRelativeBias;
         index = static_cast<std::uint32_t>(place - kObjRelativeBias);
     };
-    for (Corner& corner : chunk.corners) {
-        resolve_index(corner.position, kObjPosition);
-        resolve_index(corner.uv, kObjUv);
-        resolve_index(corner.normal, kObjNormal);
+    for (ObjTriangle& triangle : chunk.triangles) {
+        for (Corner& corner : triangle) {
+            resolve_index(corner.position, kObjPosition);
+            resolve_index(corner.uv, kObjUv);
+            resolve_index(corner.normal, kObjNormal);
+        }
     }
     return good;
 }
@@ -103,10 +111,10 @@ void Assembly::append_chunk(ObjChunk& chunk, std::size_t text_bytes_left) {
 void Assembly::append_arrays(const ObjChunk& chunk, std::size_t text_bytes_left) {
     SourceScene& scene = contents_.scene;
     const auto& bytes = chunk.text_bytes;
-    append(scene.positions, chunk.positions, bytes[kObjPosition], text_bytes_left);
-    append(scene.uvs, chunk.uvs, bytes[kObjUv], text_bytes_left);
-    append(scene.normals, chunk.normals, bytes[kObjNormal], text_bytes_left);
-    append(scene.corners, chunk.corners, bytes[3], text_bytes_left);
+    append<glm::vec3>(scene.positions, chunk.positions, bytes[kObjPosition], text_bytes_left);
+    append<glm::vec2>(scene.uvs, chunk.uvs, bytes[kObjUv], text_bytes_left);
+    append<glm::vec3>(scene.normals, chunk.normals, bytes[kObjNormal], text_bytes_left);
+    append<Corner>(scene.corners, corners_of(chunk), bytes[kObjFaceText], text_bytes_left);
     const bool too_many =
         scene.positions.size() > kMaxObjElements || scene.uvs.size() > kMaxObjElements ||
         scene.normals.size() > kMaxObjElements || scene.corners.size() / 3 > kMaxTriangles;
@@ -143,7 +151,7 @@ void Assembly::append_materials(const ObjChunk& chunk) {
         material_use_ = use;
         material_id_ = kAbsent;
     }
-    use_until(chunk.corners.size() / 3);
+    use_until(chunk.triangles.size());
 }
 
 void Assembly::append_notes(const ObjChunk& chunk) {

@@ -9,13 +9,13 @@
 #include <cmath>
 #include <cstring>
 
+#include "cw2-bake/obj_plain_lines.h"
 #include "cw2-bake/text_lines.h"
 
 namespace bake {
 namespace {
 
 constexpr std::array<const char*, 3> kElementNames{"vertex", "texture coordinate", "normal"};
-constexpr std::size_t kFaceBytes = 3;  // index into ObjChunk::text_bytes
 
 /// What is wrong with the statement at hand; does not leave this file.
 struct Failure {
@@ -45,60 +45,13 @@ const char* skip_blanks(const char* p) {
     return p;
 }
 
-/// Reads the digits at `p`, eight bytes in one go. Returns their number, up to 7; 8 if there may be
-/// more, or if the text ends too soon to tell: then `value` means nothing.
-unsigned leading_digits(const char* p, const char* limit, std::uint64_t& value) {
-    if (limit - p < 8) return 8;
-    std::uint64_t bytes;
-    std::memcpy(&bytes, p, sizeof bytes);
-    bytes ^= 0x3030'3030'3030'3030;  // digits become 0 to 9
-    // The first byte above 9 shows in its top bit; what it carries spoils only those behind it.
-    const std::uint64_t others = (bytes | (bytes + 0x7676'7676'7676'7676)) & 0x8080'8080'8080'8080;
-    const unsigned count = static_cast<unsigned>(std::countr_zero(others)) / 8;
-    if (count == 0 || count == 8) return count;
-    // Zeros take the places before the first digit; then pairs, fours and all eight are joined.
-    bytes <<= 64 - 8 * count;
-    bytes = bytes * (1 + (10 << 8)) >> 8 & 0x00FF'00FF'00FF'00FF;
-    bytes = bytes * (1 + (100 << 16)) >> 16 & 0x0000'FFFF'0000'FFFF;
-    value = bytes * (1 + (10'000ull << 32)) >> 32;
-    return count;
-}
-
-/// The value of plain decimals, "-12.345678" and shorter, with what follows them; null where it
-/// takes fast_float to round as it must.
-const char* short_decimal(const char* p, const char* limit, float& value) {
-    constexpr double kPowers[] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7};
-    const bool negative = *p == '-';
-    p += negative;
-    std::uint64_t digits = 0;
-    unsigned count = leading_digits(p, limit, digits);
-    if (count == 0 || count == 8) return nullptr;
-    p += count;
-    std::uint64_t decimals = 0;
-    count = 0;
-    if (*p == '.') {
-        count = leading_digits(++p, limit, decimals);
-        if (count == 8) return nullptr;
-        p += count;
-    }
-    if (!ends_word(*p)) return nullptr;
-    // At most 14 digits are exact as a double, and one division rounds once; rounding again to
-    // float goes wrong only from halfway between two.
-    const auto power = static_cast<std::uint64_t>(kPowers[count]);
-    const double wide = static_cast<double>(digits * power + decimals) / kPowers[count];
-    constexpr std::uint64_t kBelowFloat = (1u << 29) - 1;
-    if ((std::bit_cast<std::uint64_t>(wide) & kBelowFloat) == 1u << 28) return nullptr;
-    value = static_cast<float>(negative ? -wide : wide) + 0.0f;  // -0 becomes +0
-    return p;
-}
-
 /// Every pointer into the text stands before a line end, which stops all scanning; `limit_` is the
 /// end of the text at hand. The functions that parse a statement return what follows its line, or
 /// null if it goes on in the next line: then it is joined and parsed again.
 class ChunkParser {
  public:
     ChunkParser(std::string_view text, const ObjIndexBounds& bounds, ObjChunk& chunk)
-        : text_(text), bounds_(bounds), chunk_(chunk) {}
+        : text_(text), bounds_(bounds), chunk_(chunk), plain_(text, bounds, chunk) {}
 
     void parse(std::size_t begin, std::size_t end);
 
@@ -119,12 +72,13 @@ class ChunkParser {
     const char* rest(const char* p);
     const char* after_line(const char* p);
     std::uint32_t triangle_count() const {
-        return static_cast<std::uint32_t>(chunk_.corners.size() / 3);
+        return static_cast<std::uint32_t>(chunk_.triangles.size());
     }
 
     std::string_view text_;
     const ObjIndexBounds& bounds_;
     ObjChunk& chunk_;
+    PlainLines plain_;
     const char* limit_ = nullptr;
     std::size_t offset_ = 0;  // of the statement at hand
 };
@@ -137,7 +91,9 @@ void ChunkParser::parse(std::size_t begin, std::size_t end) {
 
     offset_ = begin;
     try {
-        while (offset_ < end) {
+        for (;;) {
+            offset_ = plain_.read(offset_, whole_lines);
+            if (offset_ == end) break;
             limit_ = text.data() + whole_lines;
             const char* next = offset_ < whole_lines ? statement(text.data() + offset_) : nullptr;
             if (next) {
@@ -154,6 +110,7 @@ void ChunkParser::parse(std::size_t begin, std::size_t end) {
     } catch (const Failure& failure) {
         chunk_.error = ObjError{offset_, failure.what};
     }
+    plain_.finish();
 }
 
 /// Null also for the keywords that other() knows.
@@ -189,7 +146,6 @@ const char* ChunkParser::rest(const char* p) {
 
 const char* ChunkParser::number(const char* p, float& value) {
     p = skip_blanks(p);
-    if (const char* const end = short_decimal(p, limit_, value)) return end;
     if (is_continuation(p)) return nullptr;
     if (is_line_end(*p) || *p == '#') fail("a number is missing");
     const char* digits = *p == '+' && p[1] != '-' ? p + 1 : p;
@@ -228,14 +184,7 @@ const char* ChunkParser::normal(const char* p) {
     glm::vec3 v;
     if (!(p = number(p, v.x)) || !(p = number(p, v.y)) || !(p = number(p, v.z))) return nullptr;
     if (!(p = rest(p))) return nullptr;
-    const double x = v.x, y = v.y, z = v.z;
-    const double length = std::sqrt(x * x + y * y + z * z);
-    if (length > 0) {
-        v = glm::vec3(x / length, y / length, z / length) + 0.0f;
-    } else {
-        chunk_.lacks_normals = true;
-    }
-    chunk_.normals.push_back(v);
+    chunk_.add_normal(v);
     chunk_.text_bytes[kObjNormal] += static_cast<std::size_t>(p - start);
     return p;
 }
@@ -260,14 +209,8 @@ const char* ChunkParser::index(const char* p, std::uint32_t local_count, std::ui
     p += relative;
     const char* digits = p;
     std::uint64_t value = 0;
-    const unsigned count = leading_digits(p, limit_, value);
-    if (count < 8) {
-        p += count;
-    } else {
-        value = 0;
-        for (unsigned digit; (digit = static_cast<unsigned>(*p - '0')) <= 9; ++p) {
-            value = value * 10 + digit;
-        }
+    for (unsigned digit; (digit = static_cast<unsigned>(*p - '0')) <= 9; ++p) {
+        value = value * 10 + digit;
     }
     if (p == digits) fail(word_at(start) + " is not an index");
     constexpr std::ptrdiff_t kSafeDigits = 18;
@@ -317,19 +260,19 @@ const char* ChunkParser::face(const char* p) {
         p = skip_blanks(p);
         if (is_line_end(*p) || *p == '#') break;
         if (is_continuation(p)) {
-            chunk_.corners.resize(std::size_t{first_triangle} * 3);
+            chunk_.triangles.resize(first_triangle);
             return nullptr;
         }
         p = corner(p, current);
         chunk_.lacks_normals |= current.normal == kAbsent;
         if (count == 0) first = current;
-        if (count >= 2) chunk_.corners.insert(chunk_.corners.end(), {first, previous, current});
+        if (count >= 2) chunk_.triangles.push_back({first, previous, current});
         previous = current;
     }
     if (count < 3) chunk_.short_faces.push_back(offset_);
     if (count > 3) chunk_.polygons.push_back({first_triangle, count});
     p = after_line(p);
-    chunk_.text_bytes[kFaceBytes] += static_cast<std::size_t>(p - start);
+    chunk_.text_bytes[kObjFaceText] += static_cast<std::size_t>(p - start);
     return p;
 }
 
@@ -365,7 +308,7 @@ void ObjChunk::clear() {
     positions.clear();
     uvs.clear();
     normals.clear();
-    corners.clear();
+    triangles.clear();
     polygons.clear();
     material_uses.clear();
     smoothing_uses.clear();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -11,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cw2-bake/raw_vector.h"
 #include "cw2-bake/source_scene.h"
 
 namespace bake {
@@ -64,12 +66,25 @@ struct ObjError {
     std::string what;
 };
 
+using ObjTriangle = std::array<Corner, 3>;
+
+/// Where ObjChunk::text_bytes counts faces; attributes are counted by ObjAttribute.
+inline constexpr std::size_t kObjFaceText = 3;
+
 struct ObjChunk {
+    /// Scaled to length 1, if it has one.
+    void add_normal(const glm::vec3& v) {
+        const double x = v.x, y = v.y, z = v.z;
+        const double length = std::sqrt(x * x + y * y + z * z);
+        lacks_normals |= length == 0;
+        normals.push_back(length > 0 ? glm::vec3(x / length, y / length, z / length) + 0.0f : v);
+    }
+
     std::vector<glm::vec3> positions;
     std::vector<glm::vec2> uvs;
     std::vector<glm::vec3> normals;  ///< of length 1, or 0
-    /// Three a triangle. Indices are from 0 or relative, see kObjRelative.
-    std::vector<Corner> corners;
+    /// Indices are from 0 or relative, see kObjRelative.
+    RawVector<ObjTriangle> triangles;
     std::vector<ObjPolygon> polygons;
     std::vector<ObjMaterialUse> material_uses;
     std::vector<ObjSmoothingUse> smoothing_uses;
@@ -77,7 +92,7 @@ struct ObjChunk {
     std::vector<ObjStatement> unsupported;    ///< `words` is the keyword
     std::vector<std::size_t> short_faces;     ///< offsets of faces with fewer than three corners
     ObjCounts max_index{};                    ///< the largest that is not relative, from 1
-    std::array<std::size_t, 4> text_bytes{};  ///< of v, vt, vn (by ObjAttribute) and f statements
+    std::array<std::size_t, 4> text_bytes{};  ///< of v, vt, vn and f lines; see kObjFaceText
     bool has_relative = false;
     bool lacks_normals = false;     ///< some corner states no normal, or some normal is 0
     std::optional<ObjError> error;  ///< the first one; nothing after it is read

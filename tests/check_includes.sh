@@ -17,6 +17,7 @@ cw2-bake/gltf_*         | tiny_gltf.h nlohmann/json.hpp
 cw2-bake/write_gltf.*   | nlohmann/json.hpp
 cw2-bake/read_common_*  | png.h jpeglib.h jerror.h
 cw2-bake/obj_parser.cpp | fast_float/*
+cw2-bake/digits.h       | emmintrin.h
 cw2-bake/image_reader.* | OpenImageIO/*
 cw2/*                   | mesh-format/* cw2/* shaders/interop.h shaders/false_color.h *.vert.h *.frag.h glm/* fmt/*
 cw2/*                   | tbb/* CLI/* vulkan/* glslang/* SPIRV/* Imf*.h
