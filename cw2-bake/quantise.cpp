@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <limits>
 
+#include "cw2-bake/vertex_lanes.h"
 #include "mesh-format/tangent_frame.h"
 
 namespace bake {
@@ -22,8 +22,6 @@ using mesh_format::PositionForm;
 using mesh_format::TangentFrame;
 using mesh_format::UvForm;
 
-/// Points of a 16-bit lattice along one side, less one.
-constexpr double kLatticeSpan = 65'535.0;
 /// Lattice coordinates below this are exact as floats.
 constexpr double kExactIntegers = 16'777'216.0;
 
@@ -64,26 +62,25 @@ double position_step(std::span<const ChunkedMesh> meshes) {
     });
 }
 
-/// The errors of some vertices, and sums for means over all.
+/// The errors and the extent of some vertices, and sums for means over all.
 struct Errors {
     double square_position = 0.0;
     double frame_sum = 0.0;
     double frame_max = 0.0;
     double uv_texels = 0.0;
+    double square_radius = 0.0;  ///< the largest square distance from the scene's centre
 
     void add(const Errors& other) {
         square_position = std::max(square_position, other.square_position);
         frame_sum += other.frame_sum;
         frame_max = std::max(frame_max, other.frame_max);
         uv_texels = std::max(uv_texels, other.uv_texels);
+        square_radius = std::max(square_radius, other.square_radius);
     }
 };
 
-/// Rounds to the nearest whole number, halves up; much faster than std::round.
-std::int32_t nearest(double x) {
-    const auto below = static_cast<std::int32_t>(x);
-    const double rest = x - below;
-    return below + (rest >= 0.5) - (rest < -0.5);
+mesh_format::VertexLayout layout_of(const MeshRecord& record) {
+    return mesh_format::vertex_layout(record.position_form, record.frame_form, record.uv_form);
 }
 
 /// Packs the vertices of one mesh.
@@ -91,62 +88,82 @@ class MeshPacker {
  public:
     MeshPacker(const FramedScene& scene, const ChunkedMesh& mesh, const UvBudget& budget,
                double step, MeshRecord& record)
-        : scene_(scene),
-          mesh_(mesh),
-          step_(step),
-          inverse_step_(1.0 / step),
-          texels_(budget.texels),
-          record_(record) {
+        : scene_(scene), mesh_(mesh), step_(step), texels_(budget.texels), record_(record) {
         if (record.position_form == PositionForm::quantised) choose_position_origin();
         choose_uv_lattice(budget);
         set_bounds();
+        layout_ = layout_of(record);
     }
 
-    /// Writes vertices begin .. end - 1 of the mesh to `out`.
-    Errors pack(std::size_t begin, std::size_t end, std::byte* out) const {
+    /// Writes vertices begin .. end - 1 of the mesh to `out`. `center` is the scene's.
+    Errors pack(std::size_t begin, std::size_t end, const glm::dvec3& center,
+                std::byte* out) const {
         Errors errors;
+        Values values;
         for (; begin < end; begin += kBatch) {
             const std::size_t count = std::min(kBatch, end - begin);
             // The next batch lies all over the memory: starts to fetch it.
             const std::size_t behind = std::min(begin + count + kBatch, mesh_.vertices.size());
             for (std::size_t v = begin + count; v < behind; ++v)
                 __builtin_prefetch(&scene_.framed.vertices[mesh_.vertices[v]]);
-            errors.add(pack_batch(std::span(mesh_.vertices).subspan(begin, count), out));
+            gather(std::span(mesh_.vertices).subspan(begin, count), values);
+            errors.add(pack_batch(values, count, out));
+            errors.add({.square_radius = largest_square_distance(values.position, center)});
+            out += count * layout_.stride;
         }
         return errors;
     }
 
  private:
-    /// Moves `out` behind what it writes.
-    Errors pack_batch(std::span<const std::uint32_t> vertices, std::byte*& out) const {
-        const auto layout =
-            mesh_format::vertex_layout(record_.position_form, record_.frame_form, record_.uv_form);
-        std::array<TangentFrame, kBatch> frames;
-        std::array<double, kBatch> degrees;
-        for (std::size_t i = 0; i < vertices.size(); ++i) {
-            const glm::vec3& n = scene_.normal(vertices[i]);
-            const glm::vec4& t = scene_.framed.vertices[vertices[i]].tangent;
-            frames[i] = {{t.x, t.y, t.z}, {n.x, n.y, n.z}, t.w};
+    /// Of a batch of vertices; those that it is short of repeat the first.
+    struct Values {
+        std::array<Batch<float>, 3> position;
+        std::array<Batch<float>, 2> uv;
+        Batch<TangentFrame> frame;
+    };
+
+    void gather(std::span<const std::uint32_t> vertices, Values& values) const {
+        for (std::size_t i = 0; i < kBatch; ++i) {
+            const std::uint32_t vertex = vertices[i < vertices.size() ? i : 0];
+            const glm::vec3& position = scene_.position(vertex);
+            for (int axis = 0; axis < 3; ++axis) values.position[axis][i] = position[axis];
+            const glm::vec2 uv = scene_.uv(vertex);
+            for (int axis = 0; axis < 2; ++axis) values.uv[axis][i] = uv[axis];
+            const glm::vec3& n = scene_.normal(vertex);
+            const glm::vec4& t = scene_.framed.vertices[vertex].tangent;
+            values.frame[i] = {{t.x, t.y, t.z}, {n.x, n.y, n.z}, t.w};
         }
-        mesh_format::pack_frames(record_.frame_form, std::span(frames).first(vertices.size()),
-                                 out + layout.frame_offset, layout.stride, degrees.data());
+    }
+
+    Errors pack_batch(const Values& values, std::size_t count, std::byte* out) const {
+        Errors errors = pack_frames(values, count, out + layout_.frame_offset);
+        errors.square_position = pack_positions(values, count, out);
+        errors.uv_texels = pack_uvs(values, count, out + layout_.uv_offset);
+        return errors;
+    }
+
+    Errors pack_frames(const Values& values, std::size_t count, std::byte* out) const {
+        Batch<double> degrees;
+        mesh_format::pack_frames(record_.frame_form, std::span(values.frame).first(count), out,
+                                 layout_.stride, degrees.data());
         Errors errors;
-        for (std::size_t i = 0; i < vertices.size(); ++i, out += layout.stride) {
-            errors.add({.square_position = pack_position(scene_.position(vertices[i]), out),
-                        .frame_sum = degrees[i],
-                        .frame_max = degrees[i],
-                        .uv_texels = pack_uv(scene_.uv(vertices[i]), out + layout.uv_offset)});
+        for (std::size_t i = 0; i < count; ++i) {
+            errors.frame_sum += degrees[i];
+            errors.frame_max = std::max(errors.frame_max, degrees[i]);
         }
         return errors;
     }
 
     void choose_position_origin() {
-        for (int axis = 0; axis < 3; ++axis)
+        for (int axis = 0; axis < 3; ++axis) {
             record_.origin[axis] = lattice(mesh_.positions.low, axis);
+            position_axes_[axis] = {0.0, record_.origin[axis] * step_, step_};
+        }
     }
 
+    /// The nearest point, halves up.
     std::int32_t lattice(const glm::vec3& position, int axis) const {
-        return nearest(double{position[axis]} * inverse_step_);
+        return static_cast<std::int32_t>(std::floor(position[axis] / step_ + 0.5));
     }
 
     /// By the arithmetic of shaders/mesh.vert.
@@ -167,18 +184,18 @@ class MeshPacker {
     void choose_uv_lattice(const UvBudget& budget) {
         const glm::dvec2 low(mesh_.uvs.low);
         const glm::dvec2 high(mesh_.uvs.high);
-        if (budget.shiftable) uv_shift_ = glm::floor(low);
+        const glm::dvec2 shift = budget.shiftable ? glm::floor(low) : glm::dvec2(0.0);
         for (int axis = 0; axis < 2; ++axis) {
-            const double first = low[axis] - uv_shift_[axis];
-            const double last = high[axis] - uv_shift_[axis];
+            const double first = low[axis] - shift[axis];
+            const double last = high[axis] - shift[axis];
             const double step = smallest_step(
                 last - first, [&](double candidate) { return fits(first, last, candidate); });
             record_.uv_step[axis] = static_cast<float>(step);
             record_.uv_origin[axis] = static_cast<float>(std::round(first / step) * step);
+            uv_axes_[axis] = {shift[axis], record_.uv_origin[axis], step};
             if (step > budget.largest_step()) record_.uv_form = UvForm::f32;
         }
         if (record_.uv_form == UvForm::f32) {
-            uv_shift_ = glm::dvec2(0.0);
             for (int axis = 0; axis < 2; ++axis) {
                 record_.uv_origin[axis] = 0.0f;
                 record_.uv_step[axis] = 1.0f;
@@ -186,52 +203,66 @@ class MeshPacker {
         }
     }
 
-    /// Returns the square distance to the decoded position.
-    double pack_position(const glm::vec3& position, std::byte* out) const {
+    /// Returns the largest square distance to a decoded position.
+    double pack_positions(const Values& values, std::size_t count, std::byte* out) const {
         if (record_.position_form == PositionForm::f32) {
-            std::memcpy(out, &position, sizeof position);
+            store(values.position, count, out);
             return 0.0;
         }
-        double square = 0.0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const std::int32_t point = lattice(position, axis);
-            const auto word = static_cast<std::uint16_t>(point - record_.origin[axis]);
-            std::memcpy(out + 2 * axis, &word, sizeof word);
-            const double error = double{decoded(point)} - position[axis];
-            square += error * error;
-        }
-        return square;
+        std::array<Batch<std::uint16_t>, 3> points;
+        std::array<Batch<double>, 3> errors;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            to_lattice(values.position[axis], position_axes_[axis], points[axis], errors[axis]);
+        store(points, count, out);
+        return largest_square(errors);
     }
 
-    /// Returns the error in texels.
-    double pack_uv(const glm::vec2& uv, std::byte* out) const {
+    /// Returns the largest error in texels.
+    double pack_uvs(const Values& values, std::size_t count, std::byte* out) const {
         if (record_.uv_form == UvForm::f32) {
-            std::memcpy(out, &uv, sizeof uv);
+            store(values.uv, count, out);
             return 0.0;
         }
-        double error = 0.0;
-        for (int axis = 0; axis < 2; ++axis) {
-            const double shifted = double{uv[axis]} - uv_shift_[axis];
-            const double origin = record_.uv_origin[axis];
-            const double step = record_.uv_step[axis];
-            const double point = std::clamp((shifted - origin) / step, 0.0, kLatticeSpan);
-            const auto word = static_cast<std::uint16_t>(nearest(point));
-            std::memcpy(out + 2 * axis, &word, sizeof word);
-            error = std::max(error, std::abs(origin + word * step - shifted) * texels_);
+        std::array<Batch<std::uint16_t>, 2> points;
+        double largest = 0.0;
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            Batch<double> errors;
+            to_lattice(values.uv[axis], uv_axes_[axis], points[axis], errors);
+            largest = std::max(largest, largest_magnitude(errors));
         }
-        return error;
+        store(points, count, out);
+        return largest * texels_;
     }
 
-    static constexpr std::size_t kBatch = 64;
+    /// Writes each vertex's components one behind the other.
+    template <typename Component, std::size_t kAxes>
+    void store(const std::array<Batch<Component>, kAxes>& components, std::size_t count,
+               std::byte* out) const {
+        for (std::size_t i = 0; i < count; ++i, out += layout_.stride) {
+            std::array<Component, kAxes> vertex;
+            for (std::size_t axis = 0; axis < kAxes; ++axis) vertex[axis] = components[axis][i];
+            std::memcpy(out, &vertex, sizeof vertex);
+        }
+    }
 
     const FramedScene& scene_;
     const ChunkedMesh& mesh_;
     double step_;
-    double inverse_step_;  // exact: the step is a power of two
     double texels_;
-    glm::dvec2 uv_shift_{0.0};
     MeshRecord& record_;
+    std::array<AxisLattice, 3> position_axes_{};
+    std::array<AxisLattice, 2> uv_axes_{};
+    mesh_format::VertexLayout layout_;
 };
+
+std::size_t vertex_bytes_of(const MeshRecord& record) {
+    return std::size_t{record.vertex_count} * layout_of(record).stride;
+}
+
+/// A mesh's vertices start at a multiple of 4 bytes.
+std::size_t padded(std::size_t bytes) {
+    return (bytes + 3) / 4 * 4;
+}
 
 /// Where the parts of each mesh lie in the sections. Returns the bytes of all vertices.
 std::size_t lay_out(std::span<const ChunkedMesh> meshes, std::vector<MeshRecord>& records) {
@@ -245,10 +276,7 @@ std::size_t lay_out(std::span<const ChunkedMesh> meshes, std::vector<MeshRecord>
         chunk_count += record.chunk_count;
         record.vertex_offset = vertex_bytes;
         record.first_index = index_count;
-        const auto stride =
-            mesh_format::vertex_layout(record.position_form, record.frame_form, record.uv_form)
-                .stride;
-        vertex_bytes += (std::size_t{record.vertex_count} * stride + 3) / 4 * 4;
+        vertex_bytes += padded(vertex_bytes_of(record));
         index_count += record.index_count;
     }
     return vertex_bytes;
@@ -258,7 +286,6 @@ std::size_t lay_out(std::span<const ChunkedMesh> meshes, std::vector<MeshRecord>
 struct PackBlock {
     std::size_t mesh, begin, end;
     Errors errors{};
-    double square_radius = 0.0;  ///< the largest square distance from the scene's centre
 };
 
 std::vector<PackBlock> make_blocks(std::span<const ChunkedMesh> meshes) {
@@ -270,16 +297,6 @@ std::vector<PackBlock> make_blocks(std::span<const ChunkedMesh> meshes) {
             blocks.push_back({i, begin, std::min(begin + kVerticesPerBlock, count)});
     }
     return blocks;
-}
-
-double largest_square_distance(const FramedScene& scene, std::span<const std::uint32_t> vertices,
-                               const glm::dvec3& center) {
-    double largest = 0.0;
-    for (const std::uint32_t vertex : vertices) {
-        const glm::dvec3 arm = glm::dvec3(scene.position(vertex)) - center;
-        largest = std::max(largest, glm::dot(arm, arm));
-    }
-    return largest;
 }
 
 /// Appends the mesh's part of the section of chunks. `position_error` is how far a
@@ -304,11 +321,9 @@ Box<glm::vec3> decoded_box(std::span<const MeshRecord> records) {
 void finish_scene(PackedGeometry& geometry, const Box<glm::vec3>& box,
                   std::span<const PackBlock> blocks) {
     Errors all;
-    double square_radius = 0.0;
     double vertices = 0.0;
     for (const PackBlock& block : blocks) {
         all.add(block.errors);
-        square_radius = std::max(square_radius, block.square_radius);
         vertices += static_cast<double>(block.end - block.begin);
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -317,7 +332,7 @@ void finish_scene(PackedGeometry& geometry, const Box<glm::vec3>& box,
     }
     // The error is added so that the decoded vertices, too, lie within.
     const double position_error = std::sqrt(all.square_position);
-    geometry.scene.radius = static_cast<float>(std::sqrt(square_radius) + position_error);
+    geometry.scene.radius = static_cast<float>(std::sqrt(all.square_radius) + position_error);
     geometry.scene.vertex_bytes = geometry.vertices.size();
     geometry.scene.index_count = geometry.indices.size();
     geometry.scene.position_error = static_cast<float>(position_error);
@@ -350,6 +365,11 @@ PackedGeometry quantise(const FramedScene& scene, const ChunkedScene& chunked,
         packers.emplace_back(scene, meshes[i], materials[meshes[i].material], step, record);
     }
     geometry.vertices.resize(lay_out(meshes, geometry.meshes));
+    for (const MeshRecord& record : geometry.meshes) {
+        const std::size_t bytes = vertex_bytes_of(record);
+        std::fill_n(geometry.vertices.data() + record.vertex_offset + bytes, padded(bytes) - bytes,
+                    std::byte{0});
+    }
 
     const Box<glm::vec3> box = decoded_box(geometry.meshes);
     const glm::dvec3 center = 0.5 * (glm::dvec3(box.low) + glm::dvec3(box.high));
@@ -357,16 +377,9 @@ PackedGeometry quantise(const FramedScene& scene, const ChunkedScene& chunked,
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t i) {
         PackBlock& block = blocks[i];
         const MeshRecord& record = geometry.meshes[block.mesh];
-        const auto stride =
-            mesh_format::vertex_layout(record.position_form, record.frame_form, record.uv_form)
-                .stride;
-        block.errors = packers[block.mesh].pack(
-            block.begin, block.end,
-            geometry.vertices.data() + record.vertex_offset + block.begin * stride);
-        block.square_radius = largest_square_distance(
-            scene,
-            std::span(meshes[block.mesh].vertices).subspan(block.begin, block.end - block.begin),
-            center);
+        block.errors = packers[block.mesh].pack(block.begin, block.end, center,
+                                                geometry.vertices.data() + record.vertex_offset +
+                                                    block.begin * layout_of(record).stride);
     });
     finish_scene(geometry, box, blocks);
     for (const ChunkedMesh& mesh : meshes)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cw2-bake/chunks.h"
+#include "cw2-bake/raw_vector.h"
 #include "mesh-format/layout.h"
 
 namespace bake {
@@ -21,7 +22,7 @@ struct PackedGeometry {
     mesh_format::SceneRecord scene{};
     std::vector<mesh_format::MeshRecord> meshes;  ///< as the input, in its order
     std::vector<mesh_format::ChunkRecord> chunks;
-    std::vector<std::byte> vertices;
+    RawVector<std::byte> vertices;
     std::span<const std::uint16_t> indices;  ///< the input's
 };
 

@@ -159,13 +159,14 @@ CW2_EVERY_CPU void compute(DigitLanes<kManyLanes>& lanes, int half, float invers
 
 using Words = std::array<std::uint16_t, 3>;
 
-Words quat48_of(const Digits& digits, std::uint32_t largest, bool left_handed) {
-    const std::uint32_t flags[3] = {left_handed, largest & 1, largest >> 1};
-    Words words{};
-    for (int i = 0; i < 3; ++i) {
-        words[i] = static_cast<std::uint16_t>(digits[i] | flags[i] << 15);
-    }
-    return words;
+constexpr std::size_t kQuat48Bytes = 6;
+
+/// In the lower 48 bits.
+std::uint64_t quat48_of(const Digits& digits, std::uint32_t largest, bool left_handed) {
+    const std::uint64_t first = digits[0] | std::uint32_t{left_handed} << 15;
+    const std::uint64_t second = digits[1] | (largest & 1) << 15;
+    const std::uint64_t third = digits[2] | (largest >> 1) << 15;
+    return first | second << 16 | third << 32;
 }
 
 TangentFrame unpack_quat48(const Words& words) {
@@ -341,7 +342,8 @@ void pack_digits(FrameForm form, std::span<const TangentFrame> frames, std::byte
         const auto largest = static_cast<std::uint32_t>(lanes.rotations.largest[i]);
         const bool left_handed = frames[i].handedness < 0;
         if (wide) {
-            write(quat48_of(lanes.of(i), largest, left_handed), out);
+            const std::uint64_t code = quat48_of(lanes.of(i), largest, left_handed);
+            std::memcpy(out, &code, kQuat48Bytes);
         } else {
             write(quat32_of(lanes.of(i), largest, left_handed), out);
         }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <random>
 
 #include "cw2-bake/quantise.h"
@@ -243,6 +244,28 @@ TEST(Quantise, FloatFormsAreExact) {
     }
     EXPECT_EQ(packed.scene.position_error, 0.0f);
     EXPECT_EQ(packed.scene.uv_error, 0.0f);
+}
+
+TEST(Quantise, BytesBetweenMeshesAreZero) {
+    std::mt19937 random(9);
+    Scene scene;
+    for (const std::size_t count : {3u, 9u, 15u})
+        scene.add(random_points(random, count, glm::vec3(0.0f), 1.0f),
+                  random_uvs(random, count, 0.0f, 1.0f));
+    // What the allocator is likely to hand out next.
+    for (std::size_t size = 16; size < 1024; size += 16)
+        std::fill_n(std::make_unique<std::byte[]>(size).get(), size, std::byte{0xFF});
+    const auto packed = scene.pack({}, {FrameForm::quat32, PositionForm::quantised});
+    for (std::size_t i = 0; i < packed.meshes.size(); ++i) {
+        const MeshRecord& mesh = packed.meshes[i];
+        const auto stride =
+            mesh_format::vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
+        const std::size_t end = i + 1 < packed.meshes.size() ? packed.meshes[i + 1].vertex_offset
+                                                             : packed.vertices.size();
+        std::size_t at = mesh.vertex_offset + mesh.vertex_count * stride;
+        EXPECT_EQ(end - at, 2u);
+        for (; at < end; ++at) EXPECT_EQ(packed.vertices[at], std::byte{0});
+    }
 }
 
 }  // namespace
