@@ -173,7 +173,7 @@ void write_stats(const Settings& settings, const BakeStats& stats) {
 
 }  // namespace
 
-std::string export_baked(const Settings& settings) {
+std::string export_baked(const Settings& settings, const Warn& warn) {
     if (!is_gltf(settings.output))
         throw BakeError(settings.input.string() + ": is baked already; -o FILE.glb exports it");
     refuse_overwriting(settings, {settings.input});
@@ -184,7 +184,7 @@ std::string export_baked(const Settings& settings) {
     std::vector<std::span<const std::byte>> payloads;
     for (const TextureRecord& texture : document.textures)
         payloads.push_back(document.payload(texture));
-    const std::uint64_t bytes = write_gltf(document, payloads, settings.output);
+    const std::uint64_t bytes = write_gltf(document, payloads, settings.output, warn);
     if (settings.depfile) write_depfile(*settings.depfile, settings.output, {settings.input});
     return export_summary(settings, document, bytes);
 }
@@ -243,7 +243,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
     }
     const bool exports = is_gltf(settings.output);
     const std::uint64_t bytes =
-        exports ? write_gltf(document, tables.payloads, settings.output)
+        exports ? write_gltf(document, tables.payloads, settings.output, warn)
                 : mesh_format::write(document, tables.payloads, settings.output);
     clock.end("write");
     if (settings.depfile) write_depfile(*settings.depfile, settings.output, inputs);

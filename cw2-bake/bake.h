@@ -14,6 +14,6 @@ std::string bake(const Settings& settings, const Warn& warn);
 
 /// Writes settings.input, a .cw2mesh file, as a glTF to settings.output and returns a summary.
 /// Throws as bake() does.
-std::string export_baked(const Settings& settings);
+std::string export_baked(const Settings& settings, const Warn& warn);
 
 }  // namespace bake

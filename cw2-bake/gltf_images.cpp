@@ -1,5 +1,6 @@
 #include "cw2-bake/gltf_images.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <map>
 #include <tuple>
 
+#include "cw2-bake/text_lines.h"
 #include "mesh-format/blocks.h"
 #include "mesh-format/encode_png.h"
 
@@ -37,7 +39,7 @@ struct Picture {
     std::uint32_t channels = 1;
     std::vector<std::byte> texels{std::byte{255}};
 
-    /// The texel of a picture of this size that lies where (x, y) of a larger one does.
+    /// The texel that lies where (x, y) of a picture of another size does.
     const std::byte* at(std::uint32_t x, std::uint32_t y, std::uint32_t of_width,
                         std::uint32_t of_height) const {
         const std::uint64_t column = std::uint64_t{x} * width / of_width;
@@ -83,11 +85,33 @@ std::byte rebuilt_z(std::byte x, std::byte y) {
     return static_cast<std::byte>(std::lround(127.5 + 127.5 * std::sqrt(std::max(0.0, square))));
 }
 
+struct Size {
+    std::uint32_t width = 1;
+    std::uint32_t height = 1;
+    bool is_bounded = false;  ///< would be out of proportion with all texels of both textures
+};
+
+Size common_size(const Document& document, const Key& key) {
+    const auto size_of = [&](std::uint32_t texture) {
+        if (texture == kNoTexture) return Size{};
+        return Size{document.textures[texture].width, document.textures[texture].height};
+    };
+    const auto texels = [](const Size& size) { return std::uint64_t{size.width} * size.height; };
+    const Size a = size_of(key.first);
+    const Size b = size_of(key.second);
+    const Size both{std::max(a.width, b.width), std::max(a.height, b.height)};
+    const Size larger = texels(a) >= texels(b) ? a : b;
+    constexpr std::uint64_t kMostTimes = 4;
+    if (texels(both) <= kMostTimes * texels(larger)) return both;
+    return {larger.width, larger.height, true};
+}
+
 std::vector<std::byte> encode(const Document& document, TexturePayloads payloads, const Key& key) {
     const Picture first = picture_of(document, payloads, key.first);
     const Picture second = picture_of(document, payloads, key.second);
-    const std::uint32_t width = std::max(first.width, second.width);
-    const std::uint32_t height = std::max(first.height, second.height);
+    const Size size = common_size(document, key);
+    const std::uint32_t width = size.width;
+    const std::uint32_t height = size.height;
     const bool has_alpha = key.use == Use::color && key.second != kNoTexture;
     const std::uint32_t channels = has_alpha ? 4 : 3;
     std::vector<std::byte> texels(std::size_t{width} * height * channels, std::byte{255});
@@ -130,14 +154,20 @@ std::string name_of(const Document& document, const Key& key) {
 
 }  // namespace
 
-GltfImages make_gltf_images(const Document& document, TexturePayloads payloads) {
+GltfImages make_gltf_images(const Document& document, TexturePayloads payloads, const Warn& warn) {
     GltfImages result;
     std::map<Key, std::uint32_t> known;
     std::vector<Key> keys;
     const auto add = [&](const Key& key) {
         if (key.first == kNoTexture && key.second == kNoTexture) return kNoImage;
         const auto [entry, fresh] = known.try_emplace(key, static_cast<std::uint32_t>(keys.size()));
-        if (fresh) keys.push_back(key);
+        if (fresh) {
+            keys.push_back(key);
+            if (common_size(document, key).is_bounded) {
+                warn(fmt::format("image {}: loses texels of the smaller of its two textures",
+                                 in_quotes(name_of(document, key))));
+            }
+        }
         return entry->second;
     };
     for (const MaterialRecord& material : document.materials) {

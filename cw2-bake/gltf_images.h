@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cw2-bake/diagnostics.h"
 #include "mesh-format/file.h"
 
 namespace bake {
@@ -36,7 +37,9 @@ struct GltfImages {
 
 /// The largest level of every texture that a material uses, blocks decoded: base colour with the
 /// alpha mask, roughness in green with metalness in blue, normals with z. Where two that share an
-/// image differ in size, the smaller one's texels are repeated.
-GltfImages make_gltf_images(const mesh_format::Document& document, TexturePayloads payloads);
+/// image differ in size, the smaller one's texels are repeated, unless that took more than four
+/// times the texels of the larger one, whose size the image then has, with a warning.
+GltfImages make_gltf_images(const mesh_format::Document& document, TexturePayloads payloads,
+                            const Warn& warn);
 
 }  // namespace bake

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include "cw2-bake/gltf_json.h"
 #include "cw2-bake/text_lines.h"
@@ -93,9 +94,20 @@ void GltfPrimitives::expect_mesh(int mesh) {
     for (const auto& primitive : file_.model.meshes[static_cast<std::size_t>(mesh)].primitives) {
         const auto positions = primitive.attributes.find("POSITION");
         if (positions == primitive.attributes.end()) continue;
+        const bool first_time = read_.insert(positions->second).second;
+        if (std::exchange(read_last_, positions->second) != positions->second && !first_time)
+            read_again_ += accessors_.count(positions->second);
         const int counted = primitive.indices >= 0 ? primitive.indices : positions->second;
         const bool is_list = primitive.mode == TINYGLTF_MODE_TRIANGLES;
         corners_ += accessors_.count(counted) * (is_list ? 1 : 3);
+    }
+    // Only the latest accessor is kept.
+    constexpr std::size_t kMostReads = std::size_t{1} << 33;
+    if (read_again_ > kMostReads) {
+        fail_at(file_.path, fmt::format("/meshes/{}", mesh),
+                fmt::format("its nodes take turns with others so often that more than {} positions "
+                            "would be read",
+                            kMostReads));
     }
     if (corners_ > most_corners_) {
         fail_at(file_.path, fmt::format("/meshes/{}", mesh),
@@ -164,7 +176,7 @@ void GltfPrimitives::add_primitive(const tinygltf::Primitive& primitive, const s
     const glm::dmat3 linear(world_from_mesh);
     const glm::dmat3 of_normals = normal_matrix(linear);
     const bool mirrored = glm::determinant(linear) < 0.0;
-    new_index_.assign(arrays.count, kUnused);
+    if (new_index_.size() < arrays.count) new_index_.resize(arrays.count, kUnused);
     std::vector<glm::vec4> tangents;  // of the new vertices
     const auto first_vertex = static_cast<std::uint32_t>(scene_.positions.size());
     const auto add_vertex = [&](std::uint32_t i) {
@@ -207,6 +219,8 @@ void GltfPrimitives::add_primitive(const tinygltf::Primitive& primitive, const s
         }
         scene_.triangle_material.push_back(material.index);
     }
+    // Only what was used: a few triangles of a long accessor may be shown again and again.
+    for (const std::uint32_t i : indices) new_index_[i] = kUnused;
     if (!scene_.tangents.empty()) scene_.tangents.resize(scene_.corners.size(), glm::vec4(0.0f));
     if (some_without_normals_) scene_.smoothing_group.resize(scene_.triangle_material.size(), 0);
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,8 +26,8 @@ class GltfPrimitives {
     /// All must outlive this.
     GltfPrimitives(const GltfFile& file, const Warn& warn, SourceScene& scene);
 
-    /// To be called for each mesh that will be added, before any is: throws BakeError where they
-    /// are so many that a small file would claim all memory.
+    /// To be called for each mesh that will be added, before any is and in their order: throws
+    /// BakeError where they are so many that a small file would claim all memory, or all day.
     void expect_mesh(int mesh);
 
     /// Adds the mesh's triangles, transformed. Throws BakeError.
@@ -53,9 +54,13 @@ class GltfPrimitives {
     SourceScene& scene_;
     GltfAccessors accessors_;
     GltfMaterials converter_;
-    std::map<int, Material> materials_;     ///< by index in the glTF
-    std::vector<std::uint32_t> new_index_;  ///< of the vertices of the primitive at hand
+    std::map<int, Material> materials_;  ///< by index in the glTF
+    std::vector<std::uint32_t>
+        new_index_;  ///< of the vertices of the primitive at hand; else kUnused
     std::size_t corners_ = 0;
+    std::set<int> read_;  ///< accessors of positions
+    int read_last_ = -1;
+    std::size_t read_again_ = 0;  ///< positions, because others were read in between
     std::size_t most_corners_;
     std::size_t points_or_lines_ = 0;
     bool colors_ = false;

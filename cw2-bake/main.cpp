@@ -33,7 +33,7 @@ void run(const bake::Settings& settings) {
         if (!settings.quiet) tell("warning: " + warning);
     };
     const std::string summary =
-        settings.is_baked ? bake::export_baked(settings) : bake::bake(settings, warn);
+        settings.is_baked ? bake::export_baked(settings, warn) : bake::bake(settings, warn);
     if (!settings.quiet) std::fputs(summary.c_str(), stdout);
 }
 

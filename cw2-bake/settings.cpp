@@ -95,7 +95,7 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     settings.is_baked = settings.input.extension() == ".cw2mesh";
     if (settings.inspect) return settings;
     for (const char* option : {"--up", "--tangent-frame", "--positions", "--textures", "--compress",
-                               "--threads", "--stats", "--strict"}) {
+                               "--threads", "--stats"}) {
         if (settings.is_baked && app.count(option) > 0) {
             throw UsageError(fmt::format("{} is not for files that are baked already", option));
         }

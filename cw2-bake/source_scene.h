@@ -55,9 +55,9 @@ struct BumpMap {
 /// Factors are linear and multiply their map's texels; see the material rules of the README.
 struct SourceMaterial {
     std::string name;
-    glm::vec3 base_color{0.8f};
-    float roughness = 1.0f;  ///< [0, 1], the alpha of the Blinn-Phong distribution
-    float metalness = 0.0f;  ///< [0, 1]
+    glm::vec3 base_color{0.8f};  ///< linear, [0, 1]
+    float roughness = 1.0f;      ///< [0, 1], the alpha of the Blinn-Phong distribution
+    float metalness = 0.0f;      ///< [0, 1]
     float alpha_cutoff = 0.5f;
     float normal_scale = 1.0f;  ///< multiplies x and y of the vectors in normal_map
     bool cull_back = false;

@@ -39,8 +39,7 @@ ordered_json json_of(const glm::vec3& v) {
 ordered_json material_json(const Document& document, const MaterialRecord& material,
                            const GltfMaterialImages& images) {
     ordered_json surface;
-    const glm::vec3 color =
-        glm::clamp(glm::make_vec3(material.base_color), glm::vec3(0.0f), glm::vec3(1.0f));
+    const glm::vec3 color = glm::make_vec3(material.base_color);
     surface["baseColorFactor"] = {color.r, color.g, color.b, 1.0f};
     surface["metallicFactor"] = material.metalness;
     surface["roughnessFactor"] = material.roughness;
@@ -189,8 +188,9 @@ bool is_gltf(const std::filesystem::path& path) {
 }
 
 std::uint64_t write_gltf(const Document& document, TexturePayloads payloads,
-                         const std::filesystem::path& path) {
-    const GltfImages images = make_gltf_images(document, payloads);
+                         const std::filesystem::path& path, const Warn& warn) {
+    const GltfImages images = make_gltf_images(
+        document, payloads, [&](const std::string& what) { warn(path.string() + ": " + what); });
     GltfGeometry geometry = make_gltf_geometry(document);
     ordered_json root;
     root["asset"] = {{"version", "2.0"}, {"generator", "cw2-bake " CW2_VERSION}};

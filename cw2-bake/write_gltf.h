@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "cw2-bake/diagnostics.h"
 #include "cw2-bake/gltf_images.h"
 #include "mesh-format/file.h"
 
@@ -15,11 +16,12 @@ bool is_gltf(const std::filesystem::path& path);
 /// Writes a .glb, or a .gltf that holds its buffer as a data URI: positions, normals, tangents,
 /// UVs, materials with PNG images, and the camera and light if the document has them (see
 /// gltf_light.h). A material whose back faces keep their normals says so in its
-/// extras, as "cw2_back_normals": "kept", which read_gltf() honours. Base colours above 1 become 1.
+/// extras, as "cw2_back_normals": "kept", which read_gltf() honours. Warns as make_gltf_images()
+/// does.
 ///
 /// `document` is not encoded; `payloads` holds the bytes of its textures. Written beside `path` and
 /// renamed. Returns the file's size. Throws mesh_format::FileError.
 std::uint64_t write_gltf(const mesh_format::Document& document, TexturePayloads payloads,
-                         const std::filesystem::path& path);
+                         const std::filesystem::path& path, const Warn& warn);
 
 }  // namespace bake

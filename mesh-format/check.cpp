@@ -154,8 +154,8 @@ void check_material(const Checker& check, const Document& document, std::size_t 
         check.require(condition, "material", i, what);
     };
     require(valid_text(document, material.name), "its name lies outside the strings");
-    require(all_finite(material.base_color), "its base colour is not finite");
-    require(in_unit_interval(material.roughness) && in_unit_interval(material.metalness) &&
+    require(std::ranges::all_of(material.base_color, in_unit_interval) &&
+                in_unit_interval(material.roughness) && in_unit_interval(material.metalness) &&
                 in_unit_interval(material.alpha_cutoff),
             "a factor lies outside [0, 1]");
     require(std::isfinite(material.normal_scale), "its normal scale is not finite");

@@ -166,7 +166,7 @@ enum MaterialFlags : std::uint32_t {
 /// Factors multiply their texture's sample; an absent texture counts as 1 (normal: (0, 0, 1)).
 struct MaterialRecord {
     StringRef name;
-    float base_color[3];  ///< linear
+    float base_color[3];  ///< linear, [0, 1]
     float roughness;      ///< [0, 1], the alpha of the Blinn-Phong distribution
     float metalness;      ///< [0, 1]
     float alpha_cutoff;   ///< a fragment whose mask is below this is discarded

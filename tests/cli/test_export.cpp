@@ -183,6 +183,32 @@ TEST_F(Export, KeepsTheCameraAndTheLight) {
     }
 }
 
+TEST_F(Export, AnImageOfTwoTexturesIsNotOutOfProportion) {
+    const auto line = [](int width, int height) {
+        return painted(width, height, 3,
+                       [](int x, int y) { return std::vector(3, (x + y) % 2 == 0 ? 1.0 : 0.2); });
+    };
+    write_picture(here("wide.png"), line(64, 1));
+    write_picture(here("tall.png"), line(1, 64));
+    write("lines.mtl", "newmtl leaf\nmap_Kd wide.png\nmap_d tall.png\n");
+    write("lines.obj",
+          "mtllib lines.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+          "usemtl leaf\nf 1/1 2/2 3/3\n");
+    const std::string warning =
+        "cw2-bake: warning: a.gltf: image 'wide.png': loses texels of the smaller of its two "
+        "textures\n";
+    EXPECT_EQ(bake({"lines.obj", "-o", "a.gltf"}).err, warning);
+    bake_well({"lines.obj", "-o", "lines.cw2mesh", "--quiet"});
+    EXPECT_EQ(bake({"lines.cw2mesh", "-o", "a.gltf"}).err, warning);
+    EXPECT_EQ(bake({"lines.cw2mesh", "-o", "b.gltf", "--strict"}).status, 1);
+    EXPECT_FALSE(std::filesystem::exists(here("b.gltf")));
+    // As large as the larger one of the two, not 64 x 64.
+    bake_well({"a.gltf", "-o", "again.cw2mesh", "--quiet"});
+    const Document again = open("again.cw2mesh");
+    ASSERT_FALSE(again.textures.empty());
+    for (const auto& texture : again.textures) EXPECT_EQ(texture.width * texture.height, 64u);
+}
+
 TEST_F(Export, RefusalsNameTheFileAndLeaveNoOther) {
     bake_well({"scene.obj", "-o", "small.cw2mesh", "--compress", "--quiet"});
     write("cut.cw2mesh", read("small.cw2mesh").substr(0, 500));

@@ -220,6 +220,23 @@ TEST_F(GltfMalformed, ManyInstancesOfAMeshDoNotTakeAllMemory) {
     EXPECT_NE(message.find("implausible for the file's bytes"), message.npos) << message;
 }
 
+TEST_F(GltfMalformed, MeshesThatTakeTurnsDoNotTakeAllDay) {
+    GltfWriter gltf = square_gltf();
+    const std::vector<float> zeros(3 << 20);
+    json meshes = json::array(), nodes = json::array();
+    for (int i = 0; i < 2; ++i) {
+        json mesh = gltf.root["meshes"][0];
+        mesh["primitives"][0]["attributes"] = {{"POSITION", gltf.accessor(zeros, kFloat, "VEC3")}};
+        meshes.push_back(mesh);
+    }
+    for (int i = 0; i < 10'000; ++i) nodes.push_back({{"mesh", i % 2}});
+    gltf.root["meshes"] = meshes;
+    gltf.root["nodes"] = nodes;
+    gltf.root.erase("scene");
+    const std::string message = error(gltf);
+    EXPECT_NE(message.find("take turns"), message.npos) << message;
+}
+
 /// Any bytes are read or refused with one line, and nothing else happens.
 TEST_F(GltfMalformed, AlteredFilesAreReadOrRefused) {
     GltfWriter gltf = square_gltf();

@@ -119,7 +119,8 @@ const Hostile kHostileMaterials[] = {
      [](Forgery& f) {
          f.material(0).name = {0xFFFF'FFFF, 0xFFFF'FFFF};
      }},
-    {"base_color", [](Forgery& f) { f.material(0).base_color[2] = kNan; }},
+    {"base_color", [](Forgery& f) { f.material(0).base_color[1] = 1.5f; }},
+    {"base_color_nan", [](Forgery& f) { f.material(0).base_color[2] = kNan; }},
     {"roughness", [](Forgery& f) { f.material(0).roughness = 1.5f; }},
     {"roughness_nan", [](Forgery& f) { f.material(0).roughness = kNan; }},
     {"metalness", [](Forgery& f) { f.material(0).metalness = -0.5f; }},
