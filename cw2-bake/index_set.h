@@ -43,11 +43,6 @@ class IndexSet {
         return index;
     }
 
-    /// Starts to fetch where find_or_insert will look.
-    void prefetch(std::uint64_t hash) const {
-        __builtin_prefetch(&slots_[static_cast<std::uint32_t>(hash) & (slots_.size() - 1)]);
-    }
-
  private:
     static constexpr std::uint32_t kEmpty = 0xFFFF'FFFF;
     struct Slot {
@@ -103,8 +98,8 @@ class PlacedIndexSet {
     IndexSet overflow_;
 };
 
-/// For each element the index of the first that is equal to it. No component is -0 or NaN, so that
-/// equal bits are equal values.
+/// For each of fewer than 2^31 elements the index of the first that is equal to it. No component is
+/// -0 or NaN, so that equal bits are equal values.
 template <typename Vector>
 std::vector<std::uint32_t> first_equal(std::span<const Vector> values) {
     const auto hash = [&](std::uint32_t i) {
@@ -115,21 +110,36 @@ std::vector<std::uint32_t> first_equal(std::span<const Vector> values) {
             return hash_of(value.x, value.y, value.z);
         }
     };
-    // The set is too large for caches: its memory is asked for some values ahead.
+    // A slot holds an index, and above it the upper bits of the hash. More slots than values: no
+    // index has all bits set.
+    constexpr std::uint32_t kEmpty = 0xFFFF'FFFF;
+    std::vector<std::uint32_t> slots(std::bit_ceil(values.size() * 3 / 2 + 4), kEmpty);
+    const auto index_bits = static_cast<std::uint32_t>(slots.size() - 1);
+    const auto find_or_insert = [&](std::uint64_t hashed, std::uint32_t index) {
+        const std::uint32_t tag = static_cast<std::uint32_t>(hashed >> 32) & ~index_bits;
+        std::uint32_t place = static_cast<std::uint32_t>(hashed) & index_bits;
+        for (;; place = (place + 1) & index_bits) {
+            const std::uint32_t slot = slots[place];
+            if (slot == kEmpty) break;
+            const std::uint32_t other = slot & index_bits;
+            if ((slot & ~index_bits) == tag && values[other] == values[index]) return other;
+        }
+        slots[place] = tag | index;
+        return index;
+    };
+    // The slots are too many for caches: memory is asked for some values ahead.
     constexpr std::uint32_t kAhead = 16;
     std::array<std::uint64_t, kAhead> hashes;
-    IndexSet set(values.size());
     std::vector<std::uint32_t> first(values.size());
     const auto count = static_cast<std::uint32_t>(values.size());
     for (std::uint32_t i = 0; i < count + kAhead; ++i) {
         if (i >= kAhead) {
             const std::uint32_t v = i - kAhead;
-            first[v] = set.find_or_insert(hashes[v % kAhead], v,
-                                          [&](auto other) { return values[other] == values[v]; });
+            first[v] = find_or_insert(hashes[v % kAhead], v);
         }
         if (i < count) {
             hashes[i % kAhead] = hash(i);
-            set.prefetch(hashes[i % kAhead]);
+            __builtin_prefetch(&slots[static_cast<std::uint32_t>(hashes[i % kAhead]) & index_bits]);
         }
     }
     return first;

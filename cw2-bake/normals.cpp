@@ -1,6 +1,5 @@
 #include "cw2-bake/normals.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -119,9 +118,7 @@ class FlatNormals {
 }  // namespace
 
 void generate_normals(SourceScene& scene) {
-    const bool complete = std::none_of(scene.corners.begin(), scene.corners.end(),
-                                       [](const Corner& c) { return c.normal == kAbsent; });
-    if (complete) return;
+    if (scene.smoothing_group.empty()) return;  // every corner has one
 
     SmoothNormals smooth = sum_normals(scene);
     FlatNormals flat(scene);

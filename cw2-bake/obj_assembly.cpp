@@ -36,7 +36,7 @@ void append(std::vector<T>& all, std::span<const T> more, std::size_t more_text_
                                                        static_cast<double>(text_bytes_left) * 1.1);
         all.reserve(std::max(all.size() + more.size() + expected, all.size() * 3 / 2));
     }
-    all.insert(all.end(), more.begin(), more.end());
+    all.insert(all.end(), more.data(), more.data() + more.size());
 }
 
 template <typename T>

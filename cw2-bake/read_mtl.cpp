@@ -82,13 +82,13 @@ class MtlReader {
     SourceMaterial finish(const Statements& material);
     void warn_at_end() const;
     std::string place() const {
-        return fmt::format("{}:{}", path_.string(), line_number(text_, offset_));
+        return fmt::format("{}:{}", path_.string(), line_);
     }
 
     const std::filesystem::path& path_;
     std::string_view text_;
     const Warn& warn_;
-    std::size_t offset_ = 0;  // of the statement at hand
+    std::size_t line_ = 1;  // of the statement at hand
     Statements material_;
     std::set<std::string, std::less<>> left_out_options_;
     std::string left_out_place_;
@@ -274,9 +274,9 @@ std::vector<SourceMaterial> MtlReader::read(const std::function<bool(std::string
     std::vector<SourceMaterial> materials;
     std::set<std::string, std::less<>> seen;
     bool inside = false;
-    for (std::size_t next = 0; offset_ < text_.size(); offset_ = next) {
-        next = offset_;
-        const std::string line = take_statement(text_, next);
+    for (std::string_view rest = text_; !rest.empty();) {
+        std::size_t length = 0;
+        const std::string line = take_statement(rest, length);
         std::string_view words = line;
         const std::string_view keyword = take_word(words);
         if (keyword == "newmtl") {
@@ -287,6 +287,8 @@ std::vector<SourceMaterial> MtlReader::read(const std::function<bool(std::string
         } else if (inside) {
             statement(keyword, words);
         }
+        line_ += line_number(rest, length) - 1;
+        rest.remove_prefix(length);
     }
     if (inside) materials.push_back(finish(material_));
     warn_at_end();
