@@ -1,7 +1,9 @@
 #include "cw2-bake/triangulate.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 
 namespace bake {
 
@@ -69,37 +71,43 @@ void Triangulator::quad(std::span<const glm::vec3> polygon) {
     }
 }
 
-std::size_t Triangulator::grid_cell(double offset, double extent) const {
-    if (!(extent > 0)) return 0;
-    const double cell = offset / extent * static_cast<double>(grid_side_);
-    return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(grid_side_ - 1)));
+/// The node `node` over blockers_[begin .. end - 1]; its halves are the nodes 2 node and 2 node
+/// + 1.
+void Triangulator::build_tree(std::size_t node, std::size_t begin, std::size_t end) {
+    if (tree_.size() <= node) tree_.resize(2 * node + 2);
+    Node built{.low = points_[blockers_[begin]], .count = static_cast<std::uint32_t>(end - begin)};
+    built.high = built.low;
+    for (std::size_t i = begin; i < end; ++i) {
+        const glm::dvec2& p = points_[blockers_[i]];
+        built.low = {std::min(built.low.x, p.x), std::min(built.low.y, p.y)};
+        built.high = {std::max(built.high.x, p.x), std::max(built.high.y, p.y)};
+    }
+    tree_[node] = built;
+    if (end - begin <= kLeaf) return;
+    const int axis = built.high.x - built.low.x < built.high.y - built.low.y ? 1 : 0;
+    const std::size_t middle = (begin + end) / 2;
+    const auto at = [&](std::size_t i) {
+        return blockers_.begin() + static_cast<std::ptrdiff_t>(i);
+    };
+    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+        return points_[a][axis] < points_[b][axis];
+    });
+    build_tree(2 * node, begin, middle);
+    build_tree(2 * node + 1, middle, end);
 }
 
-void Triangulator::build_grid() {
-    glm::dvec2 low = points_[0], high = points_[0];
-    for (const glm::dvec2& p : points_) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-    grid_min_ = low;
-    grid_extent_ = high - low;
-    const auto blocking = std::count(may_block_.begin(), may_block_.end(), 1);
-    grid_side_ = 1 + static_cast<std::size_t>(std::sqrt(static_cast<double>(blocking) / 2));
-
-    const auto cell_of = [&](std::uint32_t v) {
-        const glm::dvec2 offset = points_[v] - grid_min_;
-        return grid_cell(offset.y, grid_extent_.y) * grid_side_ +
-               grid_cell(offset.x, grid_extent_.x);
-    };
-    cell_start_.assign(grid_side_ * grid_side_ + 1, 0);
-    for (std::uint32_t v = 0; v < points_.size(); ++v) {
-        if (may_block_[v]) ++cell_start_[cell_of(v) + 1];
-    }
-    for (std::size_t i = 1; i < cell_start_.size(); ++i) cell_start_[i] += cell_start_[i - 1];
-    cell_corners_.resize(static_cast<std::size_t>(blocking));
-    std::vector<std::uint32_t> place(cell_start_.begin(), cell_start_.end() - 1);
-    for (std::uint32_t v = 0; v < points_.size(); ++v) {
-        if (may_block_[v]) cell_corners_[place[cell_of(v)]++] = v;
+/// Takes notice in the nodes that corner v blocks no longer.
+void Triangulator::stop_blocking(std::uint32_t v) {
+    if (!may_block_[v]) return;
+    may_block_[v] = 0;
+    std::size_t begin = 0, end = blockers_.size();
+    for (std::size_t node = 1;;) {
+        --tree_[node].count;
+        if (end - begin <= kLeaf) return;
+        const std::size_t middle = (begin + end) / 2;
+        const bool right = place_[v] >= middle;
+        (right ? begin : end) = middle;
+        node = 2 * node + (right ? 1 : 0);
     }
 }
 
@@ -115,32 +123,75 @@ bool Triangulator::blocks(std::uint32_t q, const Triangle& ear, Rule rule) const
     return points_[q] != points_[a] && points_[q] != points_[c];
 }
 
-bool Triangulator::may_clip(std::uint32_t v, Rule rule) const {
-    const Triangle ear{previous_[v], v, next_[v]};
-    if (rule == Rule::any) return true;
-    const double area = turn(ear[0], ear[1], ear[2]);
-    if (rule == Rule::without_area) return area == 0;
-    if (area <= 0) return false;
-    if (rule == Rule::convex) return true;
+/// A corner in `node` that blocks the ear, or kNone. Sums and products round monotonically, so that
+/// a corner of a box that lies behind an edge shows the same of all that is in the box.
+std::uint32_t Triangulator::blocker(const Triangle& ear, Rule rule, std::size_t node,
+                                    std::size_t begin, std::size_t end) const {
+    const Node& box = tree_[node];
+    if (box.count == 0) return kNone;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec2 from = points_[ear[i]];
+        const glm::dvec2 edge = points_[ear[(i + 1) % 3]] - from;
+        const glm::dvec2 foremost{edge.y < 0 ? box.high.x : box.low.x,
+                                  edge.x > 0 ? box.high.y : box.low.y};
+        if (edge.x * (foremost.y - from.y) - edge.y * (foremost.x - from.x) < 0) return kNone;
+    }
+    if (end - begin > kLeaf) {
+        const std::size_t middle = (begin + end) / 2;
+        const std::uint32_t found = blocker(ear, rule, 2 * node, begin, middle);
+        return found != kNone ? found : blocker(ear, rule, 2 * node + 1, middle, end);
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+        const std::uint32_t q = blockers_[i];
+        if (may_block_[q] && blocks(q, ear, rule)) return q;
+    }
+    return kNone;
+}
 
-    glm::dvec2 low = points_[v], high = points_[v];
-    for (const std::uint32_t corner : {ear[0], ear[2]}) {
-        low = {std::min(low.x, points_[corner].x), std::min(low.y, points_[corner].y)};
-        high = {std::max(high.x, points_[corner].x), std::max(high.y, points_[corner].y)};
-    }
-    low -= grid_min_;
-    high -= grid_min_;
-    const std::size_t x0 = grid_cell(low.x, grid_extent_.x);
-    const std::size_t x1 = grid_cell(high.x, grid_extent_.x);
-    const std::size_t y1 = grid_cell(high.y, grid_extent_.y);
-    for (std::size_t y = grid_cell(low.y, grid_extent_.y); y <= y1; ++y) {
-        const std::uint32_t begin = cell_start_[y * grid_side_ + x0];
-        const std::uint32_t end = cell_start_[y * grid_side_ + x1 + 1];
-        for (std::uint32_t i = begin; i < end; ++i) {
-            if (may_block_[cell_corners_[i]] && blocks(cell_corners_[i], ear, rule)) return false;
+bool Triangulator::is_ear(std::uint32_t v, Rule rule) {
+    if (rule == Rule::convex || blockers_.empty()) return true;
+    const Triangle ear{previous_[v], v, next_[v]};
+    std::uint32_t& known = blocked_by_[v];
+    if (known != kNone && may_block_[known] && blocks(known, ear, rule)) return false;
+    known = blocker(ear, rule, 1, 0, blockers_.size());
+    return known == kNone;
+}
+
+void Triangulator::set_convex(std::uint32_t v, bool convex) {
+    const std::uint64_t bit = std::uint64_t{1} << v % 64;
+    convex_[v / 64] = convex ? convex_[v / 64] | bit : convex_[v / 64] & ~bit;
+}
+
+/// The first of corners begin .. end - 1 that is convex and satisfies the rule, else `end`.
+std::uint32_t Triangulator::first_ear(std::uint32_t begin, std::uint32_t end, Rule rule) {
+    for (std::uint32_t v = begin; v < end; ++v) {
+        const std::uint64_t word = convex_[v / 64] >> v % 64;
+        if (word == 0) {
+            v |= 63;
+            continue;
         }
+        v += static_cast<std::uint32_t>(std::countr_zero(word));
+        if (v < end && is_ear(v, rule)) return v;
     }
-    return true;
+    return end;
+}
+
+/// The corner to cut off by this rule that comes first from v on, once around; kNone if none does.
+std::uint32_t Triangulator::find(std::uint32_t v, Rule rule) {
+    if (rule == Rule::any) return v;
+    if (rule == Rule::without_area) {
+        const std::uint32_t start = v;
+        do {
+            if (turn(previous_[v], v, next_[v]) == 0) return v;
+            v = next_[v];
+        } while (v != start);
+        return kNone;
+    }
+    const auto count = static_cast<std::uint32_t>(points_.size());
+    const std::uint32_t after = first_ear(v, count, rule);
+    if (after < count) return after;
+    const std::uint32_t before = first_ear(0, v, rule);
+    return before < v ? before : kNone;
 }
 
 void Triangulator::clip_ears() {
@@ -148,41 +199,48 @@ void Triangulator::clip_ears() {
     previous_.resize(count);
     next_.resize(count);
     may_block_.resize(count);
+    convex_.assign(count / 64 + 1, 0);
     for (std::uint32_t i = 0; i < count; ++i) {
         previous_[i] = (i + count - 1) % count;
         next_[i] = (i + 1) % count;
     }
     for (std::uint32_t i = 0; i < count; ++i) {
-        may_block_[i] = turn(previous_[i], i, next_[i]) <= 0;
+        const bool convex = turn(previous_[i], i, next_[i]) > 0;
+        may_block_[i] = !convex;
+        set_convex(i, convex);
     }
-    build_grid();
+    blockers_.clear();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (may_block_[i]) blockers_.push_back(i);
+    }
+    if (!blockers_.empty()) build_tree(1, 0, blockers_.size());
+    blocked_by_.assign(count, kNone);
+    place_.resize(count);
+    for (std::uint32_t i = 0; i < blockers_.size(); ++i) place_[blockers_[i]] = i;
 
     std::uint32_t left = count, v = 0;
-    const auto clip = [&] {
-        const std::uint32_t a = previous_[v], c = next_[v];
-        triangles_.push_back({a, v, c});
+    Rule rule = Rule::ear;
+    while (left > 3) {
+        const std::uint32_t found = find(v, rule);
+        if (found == kNone) {
+            rule = static_cast<Rule>(static_cast<int>(rule) + 1);
+            continue;
+        }
+        const std::uint32_t a = previous_[found], c = next_[found];
+        triangles_.push_back({a, found, c});
         next_[a] = c;
         previous_[c] = a;
-        may_block_[v] = 0;
+        stop_blocking(found);
+        set_convex(found, false);
         for (const std::uint32_t end : {a, c}) {
-            may_block_[end] = may_block_[end] && turn(previous_[end], end, next_[end]) <= 0;
+            const bool convex = turn(previous_[end], end, next_[end]) > 0;
+            if (convex) stop_blocking(end);
+            set_convex(end, convex);
         }
         --left;
-    };
-    Rule rule = Rule::ear;
-    for (std::uint32_t refused = 0; left > 3;) {
-        if (may_clip(v, rule)) {
-            clip();
-            refused = 0;
-            // An outline that needed a later rule is no polygon: the strict one gains nothing.
-            if (rule == Rule::without_area) rule = Rule::ear;
-            v = next_[next_[v]];  // taking every other corner makes fewer slivers
-        } else {
-            v = next_[v];
-            if (++refused < left) continue;
-            refused = 0;
-            rule = static_cast<Rule>(static_cast<int>(rule) + 1);
-        }
+        // An outline that needed a later rule is no polygon: the strict one gains nothing.
+        if (rule == Rule::without_area) rule = Rule::ear;
+        v = next_[c];  // taking every other corner makes fewer slivers
     }
     triangles_.push_back({previous_[v], v, next_[v]});
 }
