@@ -55,10 +55,21 @@ CW2_INLINE void flatten(const Lanes& v, const Lanes& n, Lanes& result) {
     }
 }
 
+/// Points as they are copied the fastest.
+struct PointLanes {
+    vec2 xy[kLanes];
+    float z[kLanes];
+
+    void set(std::size_t i, const vec3& v) {
+        xy[i] = vec2(v);
+        z[i] = v.z;
+    }
+};
+
 /// The directions of growing u and v, by face.
 struct FaceLanes {
-    Lanes position[3];
-    float u[3][kLanes], v[3][kLanes];
+    PointLanes position[3];
+    vec2 uv[3][kLanes];
     Lanes s, t;                        ///< in unit length, as far as the UVs allow
     std::uint32_t preserving[kLanes];  ///< 1 or 0
     std::uint32_t usable[kLanes];      ///< 1 or 0
@@ -66,21 +77,19 @@ struct FaceLanes {
     void load(std::size_t i, const SourceScene& scene, const Corner* face) {
         for (std::size_t k = 0; k < 3; ++k) {
             position[k].set(i, scene.positions[face[k].position]);
-            const vec2& uv = scene.uvs[face[k].uv];
-            u[k][i] = uv.x;
-            v[k][i] = uv.y;
+            uv[k][i] = scene.uvs[face[k].uv];
         }
     }
 
     CW2_INLINE void compute() {
         for (std::size_t i = 0; i < kLanes; ++i) {
-            const float u1 = u[1][i] - u[0][i], v1 = v[1][i] - v[0][i];
-            const float u2 = u[2][i] - u[0][i], v2 = v[2][i] - v[0][i];
-            const float x1 = position[1].x[i] - position[0].x[i];
-            const float y1 = position[1].y[i] - position[0].y[i];
+            const float u1 = uv[1][i].x - uv[0][i].x, v1 = uv[1][i].y - uv[0][i].y;
+            const float u2 = uv[2][i].x - uv[0][i].x, v2 = uv[2][i].y - uv[0][i].y;
+            const float x1 = position[1].xy[i].x - position[0].xy[i].x;
+            const float y1 = position[1].xy[i].y - position[0].xy[i].y;
             const float z1 = position[1].z[i] - position[0].z[i];
-            const float x2 = position[2].x[i] - position[0].x[i];
-            const float y2 = position[2].y[i] - position[0].y[i];
+            const float x2 = position[2].xy[i].x - position[0].xy[i].x;
+            const float y2 = position[2].xy[i].y - position[0].xy[i].y;
             const float z2 = position[2].z[i] - position[0].z[i];
             const float area = u1 * v2 - v1 * u2;
             const float size = std::abs(area);
@@ -123,24 +132,26 @@ struct CornerLanes {
         normal.set(i, scene.normals[slot.own.normal]);
     }
 
-    /// Of one axis, from the face's corners.
-    CW2_INLINE void compute_edges(const float* p0, const float* p1, const float* p2,
-                                  float* previous, float* next) {
-        for (std::size_t i = 0; i < kLanes; ++i) {
+    CW2_INLINE void compute_edges() {
+        const PointLanes* p = face.position;
+        const auto edges = [&](std::size_t i, float p0, float p1, float p2, float& previous,
+                               float& next) __attribute__((always_inline)) {
             const bool is_0 = corner[i] == 0;
             const bool is_1 = corner[i] == 1;
-            const float here = is_0 ? p0[i] : is_1 ? p1[i] : p2[i];
-            previous[i] = (is_0 ? p2[i] : is_1 ? p0[i] : p1[i]) - here;
-            next[i] = (is_0 ? p1[i] : is_1 ? p2[i] : p0[i]) - here;
+            const float here = is_0 ? p0 : is_1 ? p1 : p2;
+            previous = (is_0 ? p2 : is_1 ? p0 : p1) - here;
+            next = (is_0 ? p1 : is_1 ? p2 : p0) - here;
+        };
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            edges(i, p[0].xy[i].x, p[1].xy[i].x, p[2].xy[i].x, to_previous.x[i], to_next.x[i]);
+            edges(i, p[0].xy[i].y, p[1].xy[i].y, p[2].xy[i].y, to_previous.y[i], to_next.y[i]);
+            edges(i, p[0].z[i], p[1].z[i], p[2].z[i], to_previous.z[i], to_next.z[i]);
         }
     }
 
     CW2_INLINE void compute(SpokeLanes& spokes) {
         face.compute();
-        const Lanes* p = face.position;
-        compute_edges(p[0].x, p[1].x, p[2].x, to_previous.x, to_next.x);
-        compute_edges(p[0].y, p[1].y, p[2].y, to_previous.y, to_next.y);
-        compute_edges(p[0].z, p[1].z, p[2].z, to_previous.z, to_next.z);
+        compute_edges();
         flatten(face.s, normal, spokes.s);
         flatten(face.t, normal, spokes.t);
         flatten(to_previous, normal, to_previous);
@@ -167,11 +178,6 @@ CW2_EVERY_CPU void compute(CornerLanes& corners, SpokeLanes& spokes) {
 }
 
 }  // namespace
-
-vec3 unit_or_zero(const vec3& v) {
-    const float squared = glm::dot(v, v);
-    return squared > 0.0f ? (1.0f / std::sqrt(squared)) * v : v;
-}
 
 void Spokes::make(const SourceScene& scene, std::span<const Slot> slots) {
     lanes_.resize((slots.size() + kLanes - 1) / kLanes);

@@ -63,7 +63,4 @@ class Spokes {
 /// The faces whose UVs span no area, ascending.
 std::vector<std::uint32_t> find_unusable_faces(const SourceScene& scene);
 
-/// v in unit length, or v itself where it is too short to have a direction.
-glm::vec3 unit_or_zero(const glm::vec3& v);
-
 }  // namespace bake

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <tuple>
+
+#include "mesh-format/every_cpu.h"
 
 namespace bake {
 namespace {
@@ -14,8 +17,9 @@ auto as_tuple(const Corner& corner) {
     return std::tie(corner.position, corner.normal, corner.uv);
 }
 
-bool equal(const Corner& a, const Corner& b) {
-    return ((a.position ^ b.position) | (a.normal ^ b.normal) | (a.uv ^ b.uv)) == 0;
+/// 0 if they are equal.
+CW2_INLINE std::uint32_t difference(const Corner& a, const Corner& b) {
+    return (a.position ^ b.position) | (a.normal ^ b.normal) | (a.uv ^ b.uv);
 }
 
 }  // namespace
@@ -68,56 +72,80 @@ CornerLists list_corners(const SourceScene& scene) {
     return lists;
 }
 
-void CornerSlots::add(const SourceScene& scene, std::span<const std::uint32_t> corners) {
+void CornerSlots::assign(const SourceScene& scene, const CornerLists& lists,
+                         std::span<const std::uint32_t> positions) {
+    constexpr std::size_t kAhead = 8;
+    std::size_t count = 0;
+    for (const std::uint32_t position : positions) count += lists.at(position).size();
+    vertices.clear();
+    slots.resize(count);
+    std::uint32_t first = 0;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        // What is first asked of the corners' faces lies all over the memory.
+        for (const std::uint32_t corner :
+             lists.at(positions[std::min(i + kAhead, positions.size() - 1)]))
+            __builtin_prefetch(&scene.corners[corner]);
+        const auto corners = lists.at(positions[i]);
+        add(scene, corners, first);
+        first += static_cast<std::uint32_t>(corners.size());
+    }
+    leaving.resize(count + kFewSlots);
+    arriving.resize(count + kFewSlots);
+    for (std::size_t i = 0; i < count; ++i) {
+        leaving[i] = static_cast<std::uint16_t>(slots[i].next.position);
+        arriving[i] = static_cast<std::uint16_t>(slots[i].previous.position);
+    }
+}
+
+/// The slots of a position, from `first` on, and its vertices; `corners` are all those there,
+/// ascending.
+void CornerSlots::add(const SourceScene& scene, std::span<const std::uint32_t> corners,
+                      std::uint32_t first) {
     // Tables, as no processor foresees which of its face's corners the next one is.
     constexpr std::uint32_t kNext[] = {1, 2, 0};
     constexpr std::uint32_t kPrevious[] = {2, 0, 1};
-    const std::size_t first = slots.size();
-    slots.resize(first + corners.size());
-    Slot* slot = &slots[first];
+    const std::uint32_t end = first + static_cast<std::uint32_t>(corners.size());
+    Slot* slot = slots.data() + first;
     std::uint32_t differences = 0;
     for (const std::uint32_t corner : corners) {
         const std::uint32_t face = corner / 3;
         const Corner* const of_face = &scene.corners[3 * std::size_t{face}];
-        const std::uint32_t k = corner % 3;
-        *slot = {of_face[k],
-                 of_face[kNext[k]],
-                 of_face[kPrevious[k]],
-                 scene.triangle_material[face],
-                 face,
-                 corner};
+        const std::uint32_t k = corner - 3 * face;
+        slot->own = of_face[k];
+        slot->next = of_face[kNext[k]];
+        slot->previous = of_face[kPrevious[k]];
+        slot->face = face;
+        slot->corner = corner;
+        slot->material = scene.triangle_material[face];
         differences |= (slot->own.normal ^ slots[first].own.normal) |
                        (slot->own.uv ^ slots[first].own.uv) |
                        (slot->material ^ slots[first].material) | std::uint32_t{slot->degenerate()};
         ++slot;
     }
-    const auto begin = static_cast<std::uint32_t>(first);
-    const auto end = static_cast<std::uint32_t>(slots.size());
     if (differences != 0)
-        add_vertices(begin);
-    else if (begin < end)
-        vertices.push_back({begin, end, end});
+        sort(first, end);
+    else if (first < end)
+        vertices.push_back({first, end, end});
 }
 
-/// Sorts the slots from `first` on.
-void CornerSlots::add_vertices(std::uint32_t first) {
+/// Sorts slots of one position into its vertices.
+void CornerSlots::sort(std::uint32_t first, std::uint32_t end) {
     const auto vertex_of = [](const Slot& slot) {
         return std::tie(slot.own.normal, slot.own.uv, slot.material);
     };
-    std::sort(slots.begin() + first, slots.end(), [&](const Slot& a, const Slot& b) {
+    std::sort(slots.begin() + first, slots.begin() + end, [&](const Slot& a, const Slot& b) {
         return std::tuple_cat(vertex_of(a), std::tuple(a.degenerate(), a.corner)) <
                std::tuple_cat(vertex_of(b), std::tuple(b.degenerate(), b.corner));
     });
-    for (std::uint32_t i = first; i < slots.size();) {
-        VertexSlots vertex{.first = i};
+    while (first < end) {
+        VertexSlots vertex{first, first, first};
         const auto is_same = [&] {
-            return i < slots.size() && vertex_of(slots[i]) == vertex_of(slots[vertex.first]);
+            return vertex.end < end && vertex_of(slots[vertex.end]) == vertex_of(slots[first]);
         };
-        while (is_same() && !slots[i].degenerate()) ++i;
-        vertex.degenerate = i;
-        while (is_same()) ++i;
-        vertex.end = i;
+        for (; is_same(); ++vertex.end)
+            if (!slots[vertex.end].degenerate()) vertex.degenerate = vertex.end + 1;
         vertices.push_back(vertex);
+        first = vertex.end;
     }
 }
 
@@ -153,43 +181,43 @@ void SlotLinks::link(const VertexSlots& vertex) {
     }
 }
 
-bool hang_together(std::span<const Slot> slots) {
-    // 16 bits of a position tell which faces may be neighbours: bit i of candidates[j], whether j
+CW2_EVERY_CPU bool hang_together(const CornerSlots& all, std::uint32_t first, std::uint32_t count) {
+    // Half a position tells which faces may be neighbours: bit i of candidates[j], whether j
     // arrives from where i leaves to.
     using Few = std::uint16_t __attribute__((vector_size(2 * kFewSlots)));
-    Few from{};
+    Few from;
+    std::memcpy(&from, &all.arriving[first], sizeof(from));
     Few candidates{};
-    const std::size_t count = slots.size();
-    for (std::size_t i = 0; i < count; ++i)
-        from[i] = static_cast<std::uint16_t>(slots[i].previous.position);
+    Few bit = Few{} + 1;
     for (std::size_t i = 0; i < count; ++i) {
-        const Few to = Few{} + static_cast<std::uint16_t>(slots[i].next.position);
-        candidates |= (from == to) & static_cast<std::uint16_t>(1u << i);
+        candidates |= (from == Few{} + all.leaving[first + i]) & bit;
+        bit += bit;
     }
+    const Slot* const slots = &all.slots[first];
     constexpr std::size_t kNobody = kFewSlots;
     std::uint8_t next[kFewSlots + 1];
     std::fill(std::begin(next), std::end(next), kNobody);
-    std::uint32_t taken = 0;
-    std::uint32_t shared = 0;
-    std::size_t ends = 0;
+    std::uint32_t doubts = 0;
+    std::uint32_t ends = 0;
     std::size_t start = 0;
     for (std::size_t j = 0; j < count; ++j) {
         const std::uint32_t matches = candidates[j];
-        shared |= matches & (taken | (matches - 1));
-        taken |= matches;
-        const std::size_t i = static_cast<std::size_t>(std::countr_zero(matches | 0x100)) % 8;
-        const bool linked = matches != 0 && equal(slots[i].next, slots[j].previous);
-        next[linked ? i : kNobody] = static_cast<std::uint8_t>(linked ? j : kNobody);
-        ends += !linked;
-        start = linked ? start : j;
+        const auto i = static_cast<std::size_t>(std::countr_zero(matches | 1u << kNobody));
+        const bool is_end = matches == 0;
+        const Corner& from_j = slots[j].previous;
+        const Corner& to_j = is_end ? from_j : slots[i].next;
+        doubts |= (matches & (matches - 1)) | difference(from_j, to_j);
+        next[i] = static_cast<std::uint8_t>(j);
+        ends += is_end;
+        start = is_end ? j : start;
     }
-    if (shared != 0 || ends > 1) return false;
+    if (doubts != 0 || ends > 1) return false;
     std::size_t at = start;
     for (std::size_t step = 1; step < count; ++step) {
         at = next[at];
         if (at == start || at == kNobody) return false;
     }
-    return true;
+    return ends == 1 || next[at] == start;
 }
 
 }  // namespace bake

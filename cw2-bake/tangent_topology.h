@@ -11,6 +11,7 @@
 namespace bake {
 
 inline constexpr std::uint32_t kNoSlot = 0xFFFF'FFFF;
+inline constexpr std::uint32_t kFewSlots = 8;
 
 /// The corners at each position of a welded scene: those of position p, ascending, are
 /// corner[first[p]] .. corner[first[p + 1]].
@@ -53,16 +54,17 @@ struct VertexSlots {
 struct CornerSlots {
     std::vector<VertexSlots> vertices;
     RawVector<Slot> slots;
+    /// Low halves of each slot's next (previous) position; kFewSlots more than there are slots.
+    RawVector<std::uint16_t> leaving;
+    RawVector<std::uint16_t> arriving;
 
-    void clear() {
-        vertices.clear();
-        slots.clear();
-    }
-    /// Adds the vertices at a position; `corners` are all those there, ascending.
-    void add(const SourceScene& scene, std::span<const std::uint32_t> corners);
+    /// Takes the vertices at some positions instead of those it has.
+    void assign(const SourceScene& scene, const CornerLists& lists,
+                std::span<const std::uint32_t> positions);
 
  private:
-    void add_vertices(std::uint32_t first);
+    void add(const SourceScene& scene, std::span<const std::uint32_t> corners, std::uint32_t first);
+    void sort(std::uint32_t first, std::uint32_t end);
 };
 
 /// Which slots at a vertex are neighbours: faces that share an edge there, one leaving along it and
@@ -101,9 +103,8 @@ class SlotLinks {
     std::vector<Edge> arriving_;
 };
 
-/// Whether at most kFewSlots faces at a vertex all hang together, and no edge has more than two of
-/// them. May answer false where they do.
-inline constexpr std::uint32_t kFewSlots = 8;
-bool hang_together(std::span<const Slot> slots);
+/// Whether `count` faces, at most kFewSlots, at a vertex all hang together, and no edge has more
+/// than two of them. May answer false where they do.
+bool hang_together(const CornerSlots& slots, std::uint32_t first, std::uint32_t count);
 
 }  // namespace bake

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numeric>
 
 #include "cw2-bake/tangent_directions.h"
 #include "cw2-bake/tangent_topology.h"
@@ -21,10 +22,15 @@ using glm::vec4;
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 constexpr vec4 kUnreached{1.0f, 0.0f, 0.0f, -1.0f};
 constexpr std::uint32_t kPositionsPerBlock = 256;
-constexpr std::uint32_t kPositionsAhead = 8;
 
 bool is_unit(const vec3& v) {
     return std::abs(glm::dot(v, v) - 1.0f) < 1e-3f;
+}
+
+/// v in unit length, or v itself where it is too short to have a direction.
+vec3 unit_or_zero(const vec3& v) {
+    const float squared = glm::dot(v, v);
+    return squared > 0.0f ? (1.0f / std::sqrt(squared)) * v : v;
 }
 
 /// Whether the angle is clearly below 90 degrees. Two directions that are both close to a third
@@ -41,15 +47,12 @@ class FramedBlock {
 
     /// The positions begin .. end.
     void make(std::uint32_t begin, std::uint32_t end) {
-        slots_.clear();
-        for (std::uint32_t p = begin; p < end; ++p) {
-            prefetch_faces(std::min(p + kPositionsAhead, end - 1));
-            slots_.add(scene_, lists_.at(p));
-        }
+        positions_.resize(end - begin);
+        std::iota(positions_.begin(), positions_.end(), begin);
+        slots_.assign(scene_, lists_, positions_);
         const std::size_t count = slots_.slots.size();
         spokes_.make(scene_, slots_.slots);
-        windings_.settle(slots_.slots, spokes_);
-        group_.assign(count, kNone);
+        group_.resize(count);
         tangents_.resize(count);
         vertex_.resize(count);
         vertices_.clear();
@@ -75,12 +78,6 @@ class FramedBlock {
         vec4 tangent{0.0f};
     };
 
-    /// Starts to fetch what is first asked of the corners' faces: they lie all over the memory.
-    void prefetch_faces(std::uint32_t position) const {
-        for (const std::uint32_t corner : lists_.at(position))
-            __builtin_prefetch(&scene_.corners[corner]);
-    }
-
     /// Makes the vertex if all its faces are shown to be one group, no two of them opposite. Else
     /// answers false.
     bool make_plain_vertex(const VertexSlots& vertex) {
@@ -103,9 +100,9 @@ class FramedBlock {
         const float enough = std::max(static_cast<float>(count) - 1.9f, 0.0f);
         if (glm::dot(sum_s, sum_s) < enough * enough || glm::dot(sum_t, sum_t) < enough * enough)
             return false;
-        if (!hang_together(std::span(slots_.slots).subspan(vertex.first, count))) return false;
-        std::fill(&vertex_[vertex.first], &vertex_[vertex.end],
-                  static_cast<std::uint32_t>(vertices_.size()));
+        if (!hang_together(slots_, vertex.first, count)) return false;
+        std::fill_n(vertex_.begin() + vertex.first, vertex.end - vertex.first,
+                    static_cast<std::uint32_t>(vertices_.size()));
         vertices_.push_back({slots_.slots[vertex.first].own, tangent(sum, vertex.first)});
         return true;
     }
@@ -113,14 +110,20 @@ class FramedBlock {
     void make_vertex(const VertexSlots& vertex) {
         const std::uint32_t begin = vertex.first;
         const std::uint32_t end = vertex.degenerate;
-        std::fill(&tangents_[begin], &tangents_[vertex.end], kUnreached);
+        std::fill(tangents_.begin() + begin, tangents_.begin() + vertex.end, kUnreached);
+        std::fill(group_.begin() + begin, group_.begin() + vertex.end, kNone);
+        for (std::uint32_t slot = begin; slot < end; ++slot) {
+            if (!spokes_.usable(slot))
+                spokes_.set_preserving(
+                    slot, windings_.preserving(slots_.slots[slot].face, spokes_.preserving(slot)));
+        }
         find_groups(vertex);
         sum_groups(begin, end);
         for (std::uint32_t slot = begin; slot < end; ++slot)
             if (group_[slot] != kNone) tangents_[slot] = groups_[group_[slot]].tangent;
         exclude_opposites(begin, end);
         // A degenerate face takes what the first other one at the vertex has.
-        if (begin < end) std::fill_n(&tangents_[end], vertex.end - end, tangents_[begin]);
+        if (begin < end) std::fill_n(tangents_.begin() + end, vertex.end - end, tangents_[begin]);
         if (!scene_.tangents.empty()) take_given(vertex);
         split(vertex);
     }
@@ -212,6 +215,7 @@ class FramedBlock {
     const SourceScene& scene_;
     const CornerLists& lists_;
     const Windings& windings_;
+    std::vector<std::uint32_t> positions_;
     CornerSlots slots_;
     SlotLinks links_;
     std::vector<FramedVertex> vertices_;

@@ -30,7 +30,7 @@ Windings::Windings(const SourceScene& scene, const CornerLists& lists)
     positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
 
     CornerSlots slots;
-    for (const std::uint32_t position : positions) slots.add(scene, lists.at(position));
+    slots.assign(scene, lists, positions);
     Spokes spokes;
     spokes.make(scene, slots.slots);
     keep_mixed_vertices(slots, spokes);
@@ -66,12 +66,9 @@ void Windings::grow_groups(const CornerSlots& slots, const SlotLinks& links, con
     }
 }
 
-void Windings::settle(std::span<const Slot> slots, Spokes& spokes) const {
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-        if (spokes.usable(i)) continue;
-        const signed char settled = preserving_[find(slots[i].face)];
-        if (settled >= 0) spokes.set_preserving(i, settled != 0);
-    }
+bool Windings::preserving(std::uint32_t face, bool otherwise) const {
+    const signed char settled = preserving_[find(face)];
+    return settled < 0 ? otherwise : settled != 0;
 }
 
 std::size_t Windings::find(std::uint32_t face) const {

@@ -17,8 +17,9 @@ class Windings {
  public:
     Windings(const SourceScene& scene, const CornerLists& lists);
 
-    /// Puts the windings of such faces into their spokes, which are made of `slots`.
-    void settle(std::span<const Slot> slots, Spokes& spokes) const;
+    /// Whether the UVs of such a face wind as its positions do; `otherwise` where no group reaches
+    /// it.
+    bool preserving(std::uint32_t face, bool otherwise) const;
 
  private:
     void grow_groups(const CornerSlots& slots, const SlotLinks& links, const Spokes& spokes);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <numbers>
 
 #include "cw2-bake/tangents.h"
@@ -145,6 +146,50 @@ TEST(Tangents, OfFacesThatShareOnlyAVertexAreNotAveraged) {
     const std::vector<vec4> tangents = mesh.tangents();
     expect_tangent(tangents[0], vec3(1, 0, 0), 1.0f);
     expect_tangent(tangents[3], vec3(0, -1, 0), 1.0f);
+}
+
+/// The corners of a triangle about the origin, at some height, turned by `turn` degrees; UVs are
+/// its x and y turned by `uv_turn`.
+std::uint32_t add_triangle_about_hub(Mesh& mesh, float height, float turn, float uv_turn) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (int corner = 0; corner < 3; ++corner) {
+        const float angle = glm::radians(120.0f * static_cast<float>(corner) + turn);
+        const float uv_angle = angle + glm::radians(uv_turn);
+        mesh.add(vec3(std::cos(angle), std::sin(angle), height),
+                 vec2(std::cos(uv_angle), std::sin(uv_angle)));
+    }
+    return first;
+}
+
+TEST(Tangents, OfFansThatShareOnlyAVertexAreNotAveraged) {
+    Mesh mesh;
+    const std::uint32_t hub = mesh.add(vec3(0), vec2(0));
+    const std::uint32_t a = add_triangle_about_hub(mesh, 0.0f, 0.0f, 0.0f);
+    const std::uint32_t b = add_triangle_about_hub(mesh, 0.5f, 0.0f, 90.0f);
+    for (const std::uint32_t rim : {a, b}) {
+        for (std::uint32_t side = 0; side < 3; ++side)
+            mesh.indices.insert(mesh.indices.end(), {hub, rim + side, rim + (side + 1) % 3});
+    }
+    const std::vector<vec4> tangents = mesh.tangents();
+    for (std::size_t face = 0; face < 3; ++face) {
+        expect_tangent(tangents[3 * face], vec3(1, 0, 0), 1.0f);
+        expect_tangent(tangents[9 + 3 * face], vec3(0, -1, 0), 1.0f);
+    }
+}
+
+TEST(Tangents, OfAThirdFaceAtAnEdgeAreItsOwn) {
+    // Three faces close around the hub; a fourth one ends at an edge where two of them meet.
+    Mesh mesh;
+    const std::uint32_t hub = mesh.add(vec3(0), vec2(0));
+    const std::uint32_t c = add_triangle_about_hub(mesh, 0.0f, 30.0f, 0.0f);
+    const std::uint32_t b = c + 1;
+    const std::uint32_t a = c + 2;
+    const std::uint32_t d = mesh.add(vec3(0.5f, -1, 0), vec2(0.5f, -0.3f));
+    mesh.indices = {hub, a, c, hub, b, a, hub, c, b, hub, d, c};
+    const std::vector<vec4> tangents = mesh.tangents();
+    for (std::size_t face = 0; face < 3; ++face)
+        expect_tangent(tangents[3 * face], vec3(1, 0, 0), 1.0f);
+    EXPECT_LT(tangents[9].y, -0.5f);
 }
 
 TEST(Tangents, OfAFaceWithoutUvAreaAreItsNeighbours) {
