@@ -155,15 +155,6 @@ void add_start(const SourceScene& source, mesh_format::SceneRecord& record) {
     }
 }
 
-std::string export_summary(const Settings& settings, const mesh_format::Document& document,
-                           std::uint64_t bytes) {
-    std::uint64_t vertices = 0;
-    for (const mesh_format::MeshRecord& mesh : document.meshes) vertices += mesh.vertex_count;
-    return fmt::format("{}\n  {} vertices, {} triangles, {} materials, {} textures; {} bytes\n",
-                       settings.output.string(), vertices, document.scene.index_count / 3,
-                       document.materials.size(), document.textures.size(), bytes);
-}
-
 void write_stats(const Settings& settings, const BakeStats& stats) {
     const std::string json = to_json(stats, std::filesystem::file_size(settings.input));
     mesh_format::OutputFile file(*settings.stats);
@@ -186,7 +177,7 @@ std::string export_baked(const Settings& settings, const Warn& warn) {
         payloads.push_back(document.payload(texture));
     const std::uint64_t bytes = write_gltf(document, payloads, settings.output, warn);
     if (settings.depfile) write_depfile(*settings.depfile, settings.output, {settings.input});
-    return export_summary(settings, document, bytes);
+    return fmt::format("{}\n{}", settings.output.string(), export_summary(document, bytes));
 }
 
 /// The geometry stays one scene from stage to stage, and no stage copies attributes: welding makes
@@ -250,7 +241,8 @@ std::string bake(const Settings& settings, const Warn& warn) {
     if (settings.stats)
         write_stats(settings,
                     {bytes, measure(framed_scene, chunked.meshes), geometry.scene, clock});
-    if (exports) return export_summary(settings, document, bytes);
+    if (exports)
+        return fmt::format("{}\n{}", settings.output.string(), export_summary(document, bytes));
     return fmt::format("{}\n{}{}", settings.output.string(), summary(document, bytes),
                        taken_over(textures));
 }

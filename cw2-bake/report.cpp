@@ -237,6 +237,14 @@ std::string summary(const Document& document, std::uint64_t file_bytes) {
            wide + uncompressed(document);
 }
 
+std::string export_summary(const Document& document, std::uint64_t file_bytes) {
+    std::uint64_t vertices = 0;
+    for (const MeshRecord& mesh : document.meshes) vertices += mesh.vertex_count;
+    return fmt::format("  {} vertices, {} triangles, {} materials, {} textures; {} bytes\n",
+                       grouped(vertices), grouped(document.scene.index_count / 3),
+                       document.materials.size(), document.textures.size(), grouped(file_bytes));
+}
+
 std::string inspection(const Document& document, std::uint64_t file_bytes) {
     std::string out = summary(document, file_bytes);
     const auto& scene = document.scene;

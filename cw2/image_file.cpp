@@ -6,6 +6,8 @@
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -62,7 +64,9 @@ Bytes encode_exr(std::uint32_t width, std::uint32_t height, std::span<const std:
 }  // namespace
 
 std::optional<ImageKind> image_kind(const std::filesystem::path& path) {
-    const std::string extension = path.extension().string();
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".png") return ImageKind::png;
     if (extension == ".exr") return ImageKind::exr;
     return std::nullopt;

@@ -15,7 +15,7 @@ enum class ImageKind {
     exr,  ///< 32-bit float RGBA, linear
 };
 
-/// The kind that the name's extension asks for.
+/// The kind that the name's extension, in any case, asks for.
 std::optional<ImageKind> image_kind(const std::filesystem::path& path);
 
 /// Bytes of a pixel in memory, tightly packed RGBA: 4 x uint8 for png (alpha is dropped),

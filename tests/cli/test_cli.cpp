@@ -270,11 +270,11 @@ TEST_F(Cli, AConfigFileStandsForItsOptions) {
                "camera-position = [0.5, 1, 2]\noutput = 'from_config.png'\n");
     EXPECT_EQ(cw2({"--config", "shot.toml"}).err, "");
     EXPECT_EQ(cw2({"scene.cw2mesh", "--size", "32x24", "--view", "normal", "--camera-position",
-                   "0.5,1,2", "--output", "from_options.png"})
+                   "0.5,1,2", "--output", "from_options.PNG"})
                   .err,
               "");
     EXPECT_TRUE(bytes_of(here("from_config.png")).starts_with("\x89PNG"));
-    EXPECT_TRUE(bytes_of(here("from_config.png")) == bytes_of(here("from_options.png")));
+    EXPECT_TRUE(bytes_of(here("from_config.png")) == bytes_of(here("from_options.PNG")));
 
     const Words with_config{"scene.cw2mesh", "--output", "new.png", "--config", "bad.toml"};
     write_file(here("bad.toml"), "ambient = [0, 0, 0]\nambiance = [0, 0, 0]\n");
