@@ -41,7 +41,7 @@ void run(const bake::Settings& settings) {
 /// their pages back to the kernel and asking for new ones takes a fifth of its time.
 void keep_memory() {
     mallopt(M_ARENA_MAX, 1);
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, 256 << 20);
     mallopt(M_TOP_PAD, 4 << 20);
 }
