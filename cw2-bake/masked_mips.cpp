@@ -3,73 +3,14 @@
 #include <array>
 #include <cmath>
 
+#include "cw2-bake/mask_coverage.h"
 #include "cw2-bake/mip_chain.h"
 #include "cw2-bake/row_ring.h"
-#include "mesh-format/every_cpu.h"
 
 namespace bake {
 namespace {
 
 using mesh_format::TextureFormat;
-
-/// How many of the values between a row's texels and those at their right are at or above
-/// `threshold`, `share` of the way from the one to the other. `row` has one texel more.
-CW2_EVERY_CPU std::uint32_t count_shown(const float* row, std::uint32_t width, float share,
-                                        float threshold) {
-    std::uint32_t count = 0;
-    for (std::uint32_t x = 0; x < width; ++x) {
-        count += row[x] + (row[x + 1] - row[x]) * share >= threshold ? 1u : 0u;
-    }
-    return count;
-}
-
-CW2_EVERY_CPU void mix_rows(const float* above, const float* below, float share, float scale,
-                            std::span<float> out) {
-    for (std::size_t x = 0; x < out.size(); ++x) {
-        const float a = std::min(above[x] * scale, 1.0f);
-        const float b = std::min(below[x] * scale, 1.0f);
-        out[x] = a + (b - a) * share;
-    }
-}
-
-/// What a renderer shows of a mask: the share of its area at or above `threshold` where its texels,
-/// times `scale` and at most 1, are filtered linearly and repeat.
-double shown_share(Level& level, float scale, float threshold) {
-    // Samples between neighbours, along each axis: more where there are few texels.
-    const int samples = level.texels.size() > 4096 ? 2 : 8;
-    std::vector<float> mixed(std::size_t{level.width} + 1);
-    std::uint64_t count = 0;
-    for (std::uint32_t y = 0; y < level.height; ++y) {
-        const float* above = level.row(y).data();
-        const float* below = level.row(neighbour(y, 1, level.height, false)).data();
-        for (int j = 0; j < samples; ++j) {
-            const float down = (static_cast<float>(j) + 0.5f) / static_cast<float>(samples);
-            mix_rows(above, below, down, scale, std::span(mixed).first(level.width));
-            mixed.back() = mixed.front();
-            for (int i = 0; i < samples; ++i) {
-                const float across = (static_cast<float>(i) + 0.5f) / static_cast<float>(samples);
-                count += count_shown(mixed.data(), level.width, across, threshold);
-            }
-        }
-    }
-    return static_cast<double>(count) /
-           (static_cast<double>(level.texels.size()) * samples * samples);
-}
-
-/// The scale that brings what is shown of the level to `share`; 1 where it is there already.
-float keep_coverage(Level& level, double share, float threshold) {
-    constexpr double kNear = 0.002;
-    if (std::abs(shown_share(level, 1.0f, threshold) - share) <= kNear) return 1.0f;
-    float low = 1.0f / 16.0f;
-    float high = 64.0f;
-    for (int step = 0; step < 14; ++step) {
-        const float middle = std::sqrt(low * high);
-        (shown_share(level, middle, threshold) < share ? low : high) = middle;
-    }
-    const double too_little = share - shown_share(level, low, threshold);
-    const double too_much = shown_share(level, high, threshold) - share;
-    return too_little < too_much ? low : high;
-}
 
 /// Divides by the weight in the fourth channel, which becomes 1, or 0 where nothing counts.
 void undo_weights(Level& level) {
@@ -184,37 +125,22 @@ float shown_from(float cutoff) {
     return (static_cast<float>(cutoff_byte(cutoff)) - 0.5f) / 255.0f;
 }
 
-std::vector<std::byte> filter_mask(const TexelSource& source, float cutoff) {
+std::vector<std::byte> filter_mask(const TexelSource& source, const MaskUse& use) {
     constexpr TextureFormat kFormat = TextureFormat::r8_unorm;
     std::vector<std::byte> payload(
         mesh_format::mip_chain_bytes(kFormat, source.width, source.height));
-    const std::uint32_t limit = cutoff_byte(cutoff);
-    const auto shown = [&](std::byte value) {
-        return std::to_integer<std::uint32_t>(value) >= limit;
-    };
-    std::size_t covered = 0;
     TexelSource encoding = source;
     encoding.read_row = [&](std::uint32_t y, std::span<float> texels) {
         source.read_row(y, texels);
-        std::byte* out = payload.data() + std::size_t{y} * source.width;
-        encode_unorm8(texels, out);
-        covered += static_cast<std::size_t>(std::count_if(out, out + source.width, shown));
+        encode_unorm8(texels, payload.data() + std::size_t{y} * source.width);
     };
     std::vector<Level> levels = smaller_levels(encoding);
-    const double share =
-        static_cast<double>(covered) / (static_cast<double>(source.width) * source.height);
+    const std::span<const std::byte> first(payload.data(),
+                                           std::size_t{source.width} * source.height);
+    MaskCoverage coverage(first, source.width, source.height, use);
     for (std::size_t i = 0; i < levels.size(); ++i) {
-        const std::vector<float>& texels = levels[i].texels;
-        const float threshold = shown_from(cutoff);
-        const float scale = keep_coverage(levels[i], share, threshold);
-        std::byte* out = level_bytes(payload, kFormat, source, static_cast<std::uint32_t>(i + 1));
-        for (std::size_t t = 0; t < texels.size(); ++t) {
-            // Rounding must not move a texel across the cutoff.
-            const auto byte =
-                static_cast<std::uint32_t>(std::min(texels[t] * scale, 1.0f) * 255.0f + 0.5f);
-            out[t] = static_cast<std::byte>(
-                texels[t] * scale >= threshold ? std::max(byte, limit) : std::min(byte, limit - 1));
-        }
+        const auto number = static_cast<std::uint32_t>(i + 1);
+        coverage.store_next(levels[i], level_bytes(payload, kFormat, source, number));
     }
     return payload;
 }

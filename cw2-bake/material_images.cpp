@@ -88,13 +88,17 @@ std::optional<Mask> find_mask(const ImageRequest& request, const Image* color, c
     return hides ? mask : std::nullopt;
 }
 
-void make_surface(const ImageRequest& request, ImageCache& images, ImageResult& result) {
+void make_surface(const ImageRequest& request, TextureMode mode, ImageCache& images,
+                  ImageResult& result) {
     const Image* color = load(request.map, images, result);
     const Image* alpha = load(request.alpha_map, images, result);
     const std::optional<Mask> mask = find_mask(request, color, alpha);
     if (mask) {
+        const MaskUse use{.cutoff = request.alpha_cutoff,
+                          .clamp = mask->map->clamp,
+                          .blocks = mode == TextureMode::bc};
         result.alpha_mask = finish(*mask->map, TextureFormat::r8_unorm, mask->texels,
-                                   filter_mask(mask->texels, request.alpha_cutoff));
+                                   filter_mask(mask->texels, use));
     }
     if (!color) {
         return;
@@ -268,7 +272,7 @@ ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCa
     ImageResult result;
     switch (request.kind) {
         case ImageRequest::Kind::surface:
-            make_surface(request, images, result);
+            make_surface(request, mode, images, result);
             break;
         case ImageRequest::Kind::scalar:
             make_scalar(request, images, result);

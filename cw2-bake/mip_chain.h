@@ -54,11 +54,17 @@ TexelSource source_of(Level& level);
 std::vector<std::byte> filter_chain(mesh_format::TextureFormat format, const TexelSource& source,
                                     const RowEncoder& encode);
 
-/// The payload of an alpha mask (r8_unorm; values in [0, 1]): each level is scaled so that the
-/// share of its area at or above `cutoff`, filtered linearly, is that of level 0's texels, as near
-/// as its texels allow. After Castano, "Computing alpha mipmaps", 2010, who counts texels; between
-/// them small leaves would vanish.
-std::vector<std::byte> filter_mask(const TexelSource& source, float cutoff);
+/// How an alpha mask will be sampled.
+struct MaskUse {
+    float cutoff;         ///< what is below is hidden
+    bool clamp = false;   ///< the texture does not repeat
+    bool blocks = false;  ///< it will be stored in blocks, as compress_to_blocks() makes them
+};
+
+/// The payload of an alpha mask (r8_unorm; values in [0, 1]): each level shows what level 0 shows
+/// at `cutoff`; see mask_coverage.h. After Castano, "Computing alpha mipmaps", 2010, who scales a
+/// level until as many of its texels are shown; between them small leaves would vanish.
+std::vector<std::byte> filter_mask(const TexelSource& source, const MaskUse& use);
 
 /// The payload of the base colour (rgba8_srgb) under an alpha mask. `source` has four channels:
 /// linear red, green and blue, and 1; or four times 0 where the mask hides the texel. At least one

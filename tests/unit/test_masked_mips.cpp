@@ -5,9 +5,11 @@
 #include <random>
 #include <tuple>
 
+#include "cw2-bake/block_compression.h"
 #include "cw2-bake/mip_chain.h"
 #include "cw2-bake/srgb.h"
 #include "cw2-bake/texels.h"
+#include "mesh-format/blocks.h"
 
 namespace {
 
@@ -48,67 +50,158 @@ Image noise(std::uint32_t width, std::uint32_t height, double power) {
                 [&](auto, auto) { return std::pow((random() & 0xFFFF) / 65'535.0, power); });
 }
 
-/// The share of a level that is shown where it is filtered linearly and repeats: found at random
+/// One, where every ring of a level of 4 texels a ring is alike, and all texels of smaller ones.
+Image rings(std::uint32_t size, std::uint32_t count) {
+    return grey(size, size, [=](std::uint32_t x, std::uint32_t y) {
+        const std::uint32_t ring = size / count;
+        const double radius =
+            std::hypot((x % ring + 0.5) / ring - 0.5, (y % ring + 0.5) / ring - 0.5);
+        return 0.5 + ring * (0.08 - std::abs(radius - 0.38));
+    });
+}
+
+/// A level as a sampler reads it.
+struct Sampled {
+    const std::byte* texels;
+    std::uint32_t width;
+    std::uint32_t height;
+    bool clamp;
+
+    double at(double u, double v) const {
+        const auto place = [this](double at, std::uint32_t extent) {
+            const double first = std::floor(at * extent - 0.5);
+            const auto inside = [&](double index) {
+                const double last = extent - 1.0;
+                const double repeated = index < 0.0 ? last : index > last ? 0.0 : index;
+                return static_cast<std::uint32_t>(clamp ? std::clamp(index, 0.0, last) : repeated);
+            };
+            return std::tuple(inside(first), inside(first + 1.0), at * extent - 0.5 - first);
+        };
+        const auto [x0, x1, fx] = place(u, width);
+        const auto [y0, y1, fy] = place(v, height);
+        const auto value = [this](std::uint32_t x, std::uint32_t y) {
+            return std::to_integer<int>(texels[y * width + x]) / 255.0;
+        };
+        return std::lerp(std::lerp(value(x0, y0), value(x1, y0), fx),
+                         std::lerp(value(x0, y1), value(x1, y1), fx), fy);
+    }
+};
+
+/// The share of a mask that is shown `blend` of the way from one level to the next: found at random
 /// places.
-double shown_share(const std::byte* level, std::uint32_t width, std::uint32_t height,
-                   double cutoff) {
-    std::mt19937 random(2);
-    const auto place = [&](std::uint32_t extent) {
-        const double at = static_cast<double>(random()) / 4294967296.0 * extent;
-        const auto first = static_cast<std::uint32_t>(at);
-        return std::tuple(first, (first + 1) % extent, at - first);
-    };
+double shown_share(const Sampled& finer, const Sampled& coarser, double blend, double cutoff) {
     constexpr int kPlaces = 40'000;
+    std::mt19937 random(2);
+    const auto number = [&] { return static_cast<double>(random()) / 4294967296.0; };
     int shown = 0;
     for (int i = 0; i < kPlaces; ++i) {
-        const auto [x0, x1, fx] = place(width);
-        const auto [y0, y1, fy] = place(height);
-        const auto value = [&](std::uint32_t x, std::uint32_t y) {
-            return std::to_integer<int>(level[y * width + x]) / 255.0;
-        };
-        const double above = value(x0, y0) + (value(x1, y0) - value(x0, y0)) * fx;
-        const double below = value(x0, y1) + (value(x1, y1) - value(x0, y1)) * fx;
-        shown += above + (below - above) * fy >= cutoff;
+        const double u = number();
+        const double v = number();
+        shown += std::lerp(finer.at(u, v), coarser.at(u, v), blend) >= cutoff;
     }
     return static_cast<double>(shown) / kPlaces;
 }
 
-void expect_coverage(const Image& image, float cutoff) {
-    const int limit = static_cast<int>(std::ceil(cutoff * 255.0));
-    const std::vector<std::byte> payload =
-        bake::filter_mask(bake::scalar_texels(image, bake::Channel::r), cutoff);
-    const auto shown = std::ranges::count_if(
-        image.samples, [&](std::byte value) { return std::to_integer<int>(value) >= limit; });
-    const double share = static_cast<double>(shown) / static_cast<double>(image.samples.size());
-    ASSERT_TRUE(std::equal(image.samples.begin(), image.samples.end(), payload.begin()))
-        << "level 0 is not to change";
-    std::size_t offset = 0;
-    for (std::uint32_t i = 0; i < mesh_format::full_mip_count(image.width, image.height); ++i) {
-        const std::uint32_t width = mesh_format::mip_extent(image.width, i);
-        const std::uint32_t height = mesh_format::mip_extent(image.height, i);
-        if (i > 0 && width * height >= 64) {
-            EXPECT_NEAR(shown_share(payload.data() + offset, width, height, cutoff), share, 0.02)
-                << "level " << i;
+std::vector<Sampled> levels_of(const std::vector<std::byte>& payload, std::uint32_t width,
+                               std::uint32_t height, bool clamp) {
+    std::vector<Sampled> levels;
+    const std::byte* texels = payload.data();
+    for (std::uint32_t i = 0; i < mesh_format::full_mip_count(width, height); ++i) {
+        levels.push_back(
+            {texels, mesh_format::mip_extent(width, i), mesh_format::mip_extent(height, i), clamp});
+        texels += mesh_format::mip_bytes(TextureFormat::r8_unorm, width, height, i);
+    }
+    return levels;
+}
+
+/// Expects that all levels of at least 256 texels, and means of two of them, show what the first
+/// shows, give or take `tolerance` of it.
+void expect_coverage(const std::vector<Sampled>& levels, float cutoff, double tolerance) {
+    const double truth = shown_share(levels[0], levels[0], 0.0, cutoff);
+    EXPECT_GT(truth, 0.0);
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+        if (levels[i].width * levels[i].height < 256) continue;
+        for (const double blend : {0.1, 0.3, 0.5, 0.7, 0.9, 1.0}) {
+            EXPECT_NEAR(shown_share(levels[i - 1], levels[i], blend, cutoff) / truth, 1.0,
+                        tolerance)
+                << blend << " of the way to level " << i;
         }
-        offset += mesh_format::mip_bytes(TextureFormat::r8_unorm, image.width, image.height, i);
     }
 }
 
-TEST(AlphaMask, KeepsItsCoverageAtEveryLevel) {
-    expect_coverage(leaves(512, 512), 0.5f);
-    expect_coverage(leaves(300, 201), 0.5f);
-    expect_coverage(leaves(512, 256), 0.3f);
-    expect_coverage(noise(256, 256, 1.0), 0.5f);
-    expect_coverage(noise(256, 256, 6.0), 0.5f);   // one in ten
-    expect_coverage(noise(255, 129, 0.15), 0.5f);  // ninety-nine in a hundred
-    expect_coverage(noise(128, 128, 1.0), 0.9f);
+void expect_coverage(const Image& image, const bake::MaskUse& use, double tolerance) {
+    const std::vector<std::byte> payload =
+        bake::filter_mask(bake::scalar_texels(image, bake::Channel::r), use);
+    ASSERT_TRUE(std::equal(image.samples.begin(), image.samples.end(), payload.begin()))
+        << "level 0 is not to change";
+    SCOPED_TRACE(testing::Message() << image.width << " texels wide, cutoff " << use.cutoff);
+    expect_coverage(levels_of(payload, image.width, image.height, use.clamp), use.cutoff,
+                    tolerance);
+}
+
+TEST(AlphaMask, ShowsTheSameShareAtAllLevelsAndBetweenThem) {
+    expect_coverage(leaves(512, 512), {.cutoff = 0.5f}, 0.05);
+    expect_coverage(leaves(300, 201), {.cutoff = 0.5f}, 0.05);
+    expect_coverage(leaves(512, 256), {.cutoff = 0.3f}, 0.05);
+    expect_coverage(noise(256, 256, 1.0), {.cutoff = 0.5f}, 0.05);
+    expect_coverage(noise(255, 129, 0.15), {.cutoff = 0.5f}, 0.05);  // nearly all
+}
+
+TEST(AlphaMask, ShowsSomeOfManyTexelsThatAreAlike) {
+    expect_coverage(rings(256, 8), {.cutoff = 0.5f}, 0.05);
+    expect_coverage(rings(256, 16), {.cutoff = 0.5f}, 0.05);
+}
+
+TEST(AlphaMask, ClampedShowsTheSameShareAtAllLevels) {
+    // Shown along one border only, whose other side must not count.
+    expect_coverage(grey(256, 256, [](auto x, auto) { return x < 6 ? 1.0 : 0.0; }),
+                    {.cutoff = 0.5f, .clamp = true}, 0.1);
+}
+
+/// The payload that a mask in blocks stands for.
+std::vector<std::byte> decode(const bake::Texture& mask) {
+    std::vector<std::byte> payload(
+        mesh_format::mip_chain_bytes(TextureFormat::r8_unorm, mask.width, mask.height));
+    const std::byte* blocks = mask.payload.data();
+    std::byte* texels = payload.data();
+    for (std::uint32_t i = 0; i < mesh_format::full_mip_count(mask.width, mask.height); ++i) {
+        const std::uint32_t width = mesh_format::mip_extent(mask.width, i);
+        const std::uint32_t height = mesh_format::mip_extent(mask.height, i);
+        for (std::uint32_t y = 0; y < height; y += 4) {
+            const std::size_t row =
+                y / 4 * std::size_t{mesh_format::block_count(mask.format, width)};
+            mesh_format::decode_block_row(
+                mask.format, blocks + row * mesh_format::block_bytes(mask.format), width,
+                std::min(4u, height - y), texels + std::size_t{y} * width);
+        }
+        blocks += mesh_format::mip_bytes(mask.format, mask.width, mask.height, i);
+        texels += mesh_format::mip_bytes(TextureFormat::r8_unorm, mask.width, mask.height, i);
+    }
+    return payload;
+}
+
+TEST(AlphaMask, ShowsTheSameShareOnceItIsInBlocks) {
+    for (const Image& image : {leaves(256, 256), leaves(300, 201), rings(256, 8)}) {
+        const bake::MaskUse use{.cutoff = 0.5f, .blocks = true};
+        bake::Texture mask{
+            .name = "mask",
+            .format = TextureFormat::r8_unorm,
+            .width = image.width,
+            .height = image.height,
+            .payload = bake::filter_mask(bake::scalar_texels(image, bake::Channel::r), use)};
+        bake::compress_to_blocks(mask, use.cutoff);
+        ASSERT_EQ(mask.format, TextureFormat::bc4_unorm);
+        SCOPED_TRACE(testing::Message() << image.width << " texels wide");
+        const std::vector<std::byte> payload = decode(mask);
+        expect_coverage(levels_of(payload, mask.width, mask.height, false), use.cutoff, 0.05);
+    }
 }
 
 TEST(AlphaMask, AveragesWhereTheCoverageIsRightAlready) {
     // Halves of 0 and 1 with borders on even columns: nothing is to be scaled.
     const Image image = grey(64, 64, [](auto x, auto) { return x < 32 ? 1.0 : 0.0; });
     const std::vector<std::byte> payload =
-        bake::filter_mask(bake::scalar_texels(image, bake::Channel::r), 0.5f);
+        bake::filter_mask(bake::scalar_texels(image, bake::Channel::r), {.cutoff = 0.5f});
     const std::byte* level = payload.data() + 64 * 64;
     for (std::size_t i = 0; i < 32 * 32; ++i) {
         EXPECT_EQ(level[i], i % 32 < 16 ? std::byte{255} : std::byte{0});
