@@ -196,6 +196,9 @@ void release(std::string_view text, std::size_t begin, std::size_t end) {
     if (size > 0) madvise(reinterpret_cast<void*>(page_of(begin)), size, MADV_DONTNEED);
 }
 
+/// How much text is released in one go: each time interrupts the other threads.
+constexpr std::size_t kReleaseBytes = 1 << 20;
+
 struct Piece {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -209,6 +212,7 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, Assembly& asse
     std::vector<Piece> slots(in_flight);
     std::size_t next_slot = 0;
     std::size_t next_begin = 0;
+    std::size_t released = 0;
 
     const auto cut = [&](tbb::flow_control& control) -> Piece* {
         if (next_begin == text.size()) {
@@ -228,7 +232,9 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, Assembly& asse
     };
     const auto take = [&](Piece* piece) {
         assembly.append_chunk(piece->chunk, text.size() - piece->end);
-        release(text, piece->begin, piece->end);
+        if (piece->end - released < kReleaseBytes && piece->end < text.size()) return;
+        release(text, released, piece->end);
+        released = piece->end;
     };
     using tbb::filter_mode;
     tbb::parallel_pipeline(in_flight,
