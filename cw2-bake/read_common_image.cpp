@@ -10,11 +10,16 @@
 #include <string>
 
 // After <cstdio>, which it needs.
-#include <jpeglib.h>
 #include <jerror.h>
+#include <jpeglib.h>
 
 namespace bake {
 namespace {
+
+/// Throws ImageError if a file that can hold at most `most` of something states `stated` of it.
+void check_held(std::uint64_t stated, std::uint64_t most) {
+    if (stated > most) throw ImageError("is damaged: it is too short for the size that it states");
+}
 
 // Both libraries leave through longjmp(), so what has a destructor lives with the callers of the
 // functions that they leave.
@@ -51,13 +56,22 @@ struct PngReader {
     }
 };
 
+/// Deflate makes at most 258 bytes of 2 bits, a length and a distance of one bit each (RFC 1951).
+constexpr std::uint64_t kMostInflation = 258 * 8 / 2;
+
 /// False if the reader has an error.
 bool read_png(PngReader& reader, Image& image) {
     png_structp png = reader.png;
+    const std::uint64_t file_bytes = reader.rest.size();
     if (setjmp(png_jmpbuf(png)) != 0) return false;
     png_set_read_fn(png, &reader, PngReader::read);
     png_read_info(png, reader.info);
     check_extent(png_get_image_width(png, reader.info), png_get_image_height(png, reader.info));
+    const std::uint64_t texel_bits =
+        std::uint64_t{png_get_bit_depth(png, reader.info)} * png_get_channels(png, reader.info);
+    check_held(std::uint64_t{png_get_image_width(png, reader.info)} *
+                   png_get_image_height(png, reader.info) * texel_bits / 8,
+               file_bytes * kMostInflation);
     png_set_expand(png);
     if (png_get_bit_depth(png, reader.info) == 16) png_set_swap(png);
     png_set_interlace_handling(png);
@@ -108,6 +122,17 @@ struct JpegReader {
     }
 };
 
+/// How many of the smallest units of a JPEG its size states (ITU T.81, A.2). Each takes a bit at
+/// least: the Huffman code of its first coefficient (F.1.2.1 and, progressive, G.1.2.1).
+std::uint64_t unit_count(const jpeg_decompress_struct& jpeg) {
+    const auto units = [](std::uint64_t extent, int blocks) {
+        const auto texels = static_cast<std::uint64_t>(DCTSIZE * blocks);
+        return (extent + texels - 1) / texels;
+    };
+    return units(jpeg.image_width, jpeg.max_h_samp_factor) *
+           units(jpeg.image_height, jpeg.max_v_samp_factor);
+}
+
 enum class Outcome { read, other_colors, damaged };
 
 Outcome read_jpeg(JpegReader& reader, std::span<const std::byte> contents, Image& image) {
@@ -118,6 +143,8 @@ Outcome read_jpeg(JpegReader& reader, std::span<const std::byte> contents, Image
     jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(contents.data()), contents.size());
     jpeg_read_header(&jpeg, TRUE);
     check_extent(jpeg.image_width, jpeg.image_height);
+    // Arithmetic codes may take less than a bit.
+    if (!jpeg.arith_code) check_held(unit_count(jpeg), std::uint64_t{contents.size()} * 8);
     const bool grey = jpeg.jpeg_color_space == JCS_GRAYSCALE;
     if (!grey && jpeg.jpeg_color_space != JCS_YCbCr && jpeg.jpeg_color_space != JCS_RGB) {
         return Outcome::other_colors;

@@ -12,7 +12,8 @@ namespace bake {
 
 /// The image in the contents of a file; nothing if it is neither a PNG nor a JPEG, or one whose
 /// colours are neither grey nor RGB. Palettes and transparent colours are looked up. Throws
-/// ImageError if it is damaged or too large.
+/// ImageError if it is damaged or too large; before the image is allocated, if it is larger than
+/// the contents can hold.
 std::optional<Image> read_common_image(std::span<const std::byte> contents);
 
 }  // namespace bake

@@ -1,11 +1,15 @@
 // PNG and JPEG, which have a reader of their own: the samples are those that OpenImageIO reads.
 #include <gtest/gtest.h>
 #include <png.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <csetjmp>
 #include <cstdio>
+#include <fstream>
 #include <memory>
+#include <string>
 
 #include "cw2-bake/read_common_image.h"
 #include "image_files.h"
@@ -185,6 +189,96 @@ TEST(CommonImages, WhatEndsEarlyIsRefusedWhereverItEnds) {
             EXPECT_THROW(bake::read_common_image(file.bytes().first(size)), bake::ImageError)
                 << name << ' ' << size;
         }
+    }
+}
+
+/// Address space beyond what is in use is limited while this lives.
+class MemoryLimit {
+ public:
+    explicit MemoryLimit(std::uint64_t bytes) {
+        std::uint64_t pages = 0;
+        std::ifstream("/proc/self/statm") >> pages;
+        getrlimit(RLIMIT_AS, &before_);
+        rlimit limit = before_;
+        limit.rlim_cur = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + bytes;
+        setrlimit(RLIMIT_AS, &limit);
+    }
+    ~MemoryLimit() { setrlimit(RLIMIT_AS, &before_); }
+    MemoryLimit(const MemoryLimit&) = delete;
+    MemoryLimit& operator=(const MemoryLimit&) = delete;
+
+ private:
+    rlimit before_{};
+};
+
+/// 16384 x 16384 texels of 64 bits, and not one of them.
+void write_empty_png(const std::filesystem::path& path) {
+    const File file(std::fopen(path.c_str(), "wb"));
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, file.get());
+    png_set_IHDR(png, info, 16'384, 16'384, 16, PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    png_write_chunk(png, reinterpret_cast<png_const_bytep>("IDAT"),
+                    reinterpret_cast<png_const_bytep>("\x78\x9C"), 2);
+    png_write_chunk(png, reinterpret_cast<png_const_bytep>("IEND"), nullptr, 0);
+    png_destroy_write_struct(&png, &info);
+}
+
+/// One block, and a frame header that states 16384 x 16384 texels.
+void write_empty_jpeg(const std::filesystem::path& path, bool progressive) {
+    {
+        const File file(std::fopen(path.c_str(), "wb"));
+        jpeg_compress_struct jpeg{};
+        jpeg_error_mgr errors{};
+        jpeg.err = jpeg_std_error(&errors);
+        jpeg_create_compress(&jpeg);
+        jpeg_stdio_dest(&jpeg, file.get());
+        jpeg.image_width = 8;
+        jpeg.image_height = 8;
+        jpeg.input_components = 3;
+        jpeg.in_color_space = JCS_RGB;
+        jpeg_set_defaults(&jpeg);
+        if (progressive) jpeg_simple_progression(&jpeg);
+        jpeg_start_compress(&jpeg, TRUE);
+        std::vector<JSAMPLE> row(24, 100);
+        for (JSAMPROW rows[] = {row.data()}; jpeg.next_scanline < 8;) {
+            jpeg_write_scanlines(&jpeg, rows, 1);
+        }
+        jpeg_finish_compress(&jpeg);
+        jpeg_destroy_compress(&jpeg);
+    }
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::size_t frame = bytes.find(progressive ? "\xFF\xC2" : "\xFF\xC0");
+    ASSERT_NE(frame, std::string::npos);
+    write_bytes(path, bytes.replace(frame + 5, 4, std::string{'\x40', '\0', '\x40', '\0'}));
+}
+
+TEST(CommonImages, SizesThatAFileCannotHoldAreRefusedBeforeTheyAreAllocated) {
+    const TemporaryFolder folder;
+    write_empty_png(folder / "a.png");
+    write_empty_jpeg(folder / "b.jpg", false);
+    write_empty_jpeg(folder / "c.jpg", true);
+    for (const char* name : {"a.png", "b.jpg", "c.jpg"}) {
+        const mesh_format::MappedFile file(folder / name);
+        const MemoryLimit limit(64 << 20);
+        try {
+            bake::read_common_image(file.bytes());
+            ADD_FAILURE() << name << " was read";
+        } catch (const std::exception& error) {
+            EXPECT_NE(std::string(error.what()).find("too short for the size"), std::string::npos)
+                << name << ": " << error.what();
+        }
+    }
+}
+
+TEST(CommonImages, OfOneColourAreReadHoweverSmallTheirFiles) {
+    const TemporaryFolder folder;
+    for (const char* name : {"a.png", "a.jpg"}) {
+        write_image(folder / name, 2048, 2048, 1, [](int, int) { return std::vector{0.0}; });
+        EXPECT_TRUE(read_common(folder / name)) << name;
     }
 }
 
