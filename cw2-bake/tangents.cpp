@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <glm/geometric.hpp>
 #include <numeric>
 
@@ -245,8 +246,7 @@ FramedTriangles add_tangents(const SourceScene& scene) {
     };
     const std::size_t at_once =
         2 * tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    std::vector<FramedBlock> blocks;
-    blocks.reserve(at_once);
+    std::deque<FramedBlock> blocks;
     tbb::concurrent_queue<FramedBlock*> idle;
     for (std::size_t i = 0; i < at_once; ++i)
         idle.push(&blocks.emplace_back(scene, lists, windings));
