@@ -17,11 +17,12 @@ mkdir -p "$work"
 
 # run NAME COMMAND...: appends "wall cpu KiB" of one run.
 run() {
-    local name=$1
+    local name=$1 TIMEFORMAT='%R %U %S'
     shift
     sync  # what was written before is not this run's to write
-    /usr/bin/time -f '%e %U %S %M' -o "$work/time" "$@" >/dev/null
-    awk '{ print $1, $2 + $3, $4 }' "$work/time" >>"$work/$name.runs"
+    { time /usr/bin/time -f '%M' -o "$work/memory" "$@" >/dev/null; } 2>"$work/time"
+    echo "$(tail -1 "$work/time") $(<"$work/memory")" |
+        awk '{ print $1, $2 + $3, $4 }' >>"$work/$name.runs"
 }
 copy() { cp "$work/scene.cw2mesh" "$work/copy.tmp" && mv "$work/copy.tmp" "$work/copy.cw2mesh"; }
 export -f copy
@@ -43,7 +44,7 @@ for ((i = 0; i < runs; ++i)); do
     rm -f "$work/plain.cw2mesh"
     run lossless "$bin/cw2-bake" --quiet "$obj" -o "$work/plain.cw2mesh" --textures lossless
     run again "$bin/cw2-bake" --quiet "$obj" -o "$work/scene.cw2mesh"
-    run geometry "$bin/cw2-bake" --quiet "$obj" -o "$work/plain.cw2mesh" --textures none
+    run geometry "$bin/cw2-bake" --quiet "$obj" -o "$work/geometry.cw2mesh" --textures none
     run copy bash -c copy
     "$bin/cw2" "$work/scene.cw2mesh" --output "$work/shot.png" --samples 1 --stats "$work/stats.json"
     sed -n 's/.*"\(load\|first_frame\)_ms": \([0-9.]*\).*/\2/p' "$work/stats.json" | paste -sd' ' \
