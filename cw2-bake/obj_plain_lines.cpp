@@ -140,35 +140,30 @@ PlainLines::PlainLines(std::string_view text, const ObjIndexBounds& bounds, ObjC
     limit_ = Four{limit(kObjPosition), limit(kObjNormal), limit(kObjUv), 0};
 }
 
-CW2_INLINE const char* PlainLines::position(const char* p) {
+template <typename Vector>
+CW2_INLINE const char* PlainLines::vector(const char* p, Vector& v) const {
     RunEnds ends(text_, p + 1);
-    glm::vec3 v;
-    if (!(p = decimal(ends, p, v.x)) || !(p = decimal(ends, p, v.y)) ||
-        !(p = decimal(ends, p, v.z)) || !(p = after_line(p))) {
-        return nullptr;
+    for (int i = 0; i < Vector::length(); ++i) {
+        if (!(p = decimal(ends, p, v[i]))) return nullptr;
     }
-    chunk_.positions.push_back(v);
+    return after_line(p);
+}
+
+CW2_INLINE const char* PlainLines::position(const char* p) {
+    glm::vec3 v;
+    if ((p = vector(p, v))) chunk_.positions.push_back(v);
     return p;
 }
 
 CW2_INLINE const char* PlainLines::uv(const char* p) {
-    RunEnds ends(text_, p + 1);
     glm::vec2 v;
-    if (!(p = decimal(ends, p, v.x)) || !(p = decimal(ends, p, v.y)) || !(p = after_line(p))) {
-        return nullptr;
-    }
-    chunk_.uvs.push_back(v);
+    if ((p = vector(p, v))) chunk_.uvs.push_back(v);
     return p;
 }
 
 CW2_INLINE const char* PlainLines::normal(const char* p) {
-    RunEnds ends(text_, p + 1);
     glm::vec3 v;
-    if (!(p = decimal(ends, p, v.x)) || !(p = decimal(ends, p, v.y)) ||
-        !(p = decimal(ends, p, v.z)) || !(p = after_line(p))) {
-        return nullptr;
-    }
-    chunk_.add_normal(v);
+    if ((p = vector(p, v))) chunk_.add_normal(v);
     return p;
 }
 

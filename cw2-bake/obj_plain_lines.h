@@ -26,6 +26,8 @@ class PlainLines {
 
  private:
     const char* line(const char* p);
+    template <typename Vector>
+    const char* vector(const char* p, Vector& v) const;
     const char* position(const char* p);
     const char* uv(const char* p);
     const char* normal(const char* p);

@@ -148,22 +148,26 @@ TEST(CommonImages, JpegsGreyAndColouredOfEverySubsampling) {
     expect_as_openimageio(folder / "g.jpg");
 }
 
-void write_cmyk_jpeg(const std::filesystem::path& path) {
+/// 8 x 8 equal texels, in forms that OpenImageIO does not write.
+void write_plain_jpeg(const std::filesystem::path& path, J_COLOR_SPACE space,
+                      const std::vector<JSAMPLE>& texel, bool progressive) {
+    constexpr JDIMENSION kSide = 8;
     const File file(std::fopen(path.c_str(), "wb"));
     jpeg_compress_struct jpeg{};
     jpeg_error_mgr errors{};
     jpeg.err = jpeg_std_error(&errors);
     jpeg_create_compress(&jpeg);
     jpeg_stdio_dest(&jpeg, file.get());
-    jpeg.image_width = 8;
-    jpeg.image_height = 8;
-    jpeg.input_components = 4;
-    jpeg.in_color_space = JCS_CMYK;
+    jpeg.image_width = kSide;
+    jpeg.image_height = kSide;
+    jpeg.input_components = static_cast<int>(texel.size());
+    jpeg.in_color_space = space;
     jpeg_set_defaults(&jpeg);
+    if (progressive) jpeg_simple_progression(&jpeg);
     jpeg_start_compress(&jpeg, TRUE);
     std::vector<JSAMPLE> row;
-    for (int x = 0; x < 8; ++x) row.insert(row.end(), {255, 128, 0, 255});
-    for (JSAMPROW rows[] = {row.data()}; jpeg.next_scanline < 8;) {
+    for (JDIMENSION x = 0; x < kSide; ++x) row.insert(row.end(), texel.begin(), texel.end());
+    for (JSAMPROW rows[] = {row.data()}; jpeg.next_scanline < kSide;) {
         jpeg_write_scanlines(&jpeg, rows, 1);
     }
     jpeg_finish_compress(&jpeg);
@@ -172,7 +176,7 @@ void write_cmyk_jpeg(const std::filesystem::path& path) {
 
 TEST(CommonImages, OtherColoursAndOtherFormatsAreLeftToOpenImageIO) {
     const TemporaryFolder folder;
-    write_cmyk_jpeg(folder / "cmyk.jpg");
+    write_plain_jpeg(folder / "cmyk.jpg", JCS_CMYK, {255, 128, 0, 255}, false);
     EXPECT_FALSE(read_common(folder / "cmyk.jpg"));
     EXPECT_EQ(bake::read_image(folder / "cmyk.jpg").channels, 3u);
     write_image(folder / "a.tif", 4, 4, 3, [](int x, int y) { return texel(x, y, 3); });
@@ -228,27 +232,7 @@ void write_empty_png(const std::filesystem::path& path) {
 
 /// One block, and a frame header that states 16384 x 16384 texels.
 void write_empty_jpeg(const std::filesystem::path& path, bool progressive) {
-    {
-        const File file(std::fopen(path.c_str(), "wb"));
-        jpeg_compress_struct jpeg{};
-        jpeg_error_mgr errors{};
-        jpeg.err = jpeg_std_error(&errors);
-        jpeg_create_compress(&jpeg);
-        jpeg_stdio_dest(&jpeg, file.get());
-        jpeg.image_width = 8;
-        jpeg.image_height = 8;
-        jpeg.input_components = 3;
-        jpeg.in_color_space = JCS_RGB;
-        jpeg_set_defaults(&jpeg);
-        if (progressive) jpeg_simple_progression(&jpeg);
-        jpeg_start_compress(&jpeg, TRUE);
-        std::vector<JSAMPLE> row(24, 100);
-        for (JSAMPROW rows[] = {row.data()}; jpeg.next_scanline < 8;) {
-            jpeg_write_scanlines(&jpeg, rows, 1);
-        }
-        jpeg_finish_compress(&jpeg);
-        jpeg_destroy_compress(&jpeg);
-    }
+    write_plain_jpeg(path, JCS_RGB, {100, 100, 100}, progressive);
     std::ifstream file(path, std::ios::binary);
     std::string bytes{std::istreambuf_iterator<char>(file), {}};
     const std::size_t frame = bytes.find(progressive ? "\xFF\xC2" : "\xFF\xC0");
