@@ -136,6 +136,7 @@ class MeshPacker {
     }
 
     Errors pack_batch(const Values& values, std::size_t count, std::byte* out) const {
+        if (layout_.has_gaps) std::fill_n(out, count * layout_.stride, std::byte{0});
         Errors errors = pack_frames(values, count, out + layout_.frame_offset);
         errors.square_position = pack_positions(values, count, out);
         errors.uv_texels = pack_uvs(values, count, out + layout_.uv_offset);

@@ -256,6 +256,7 @@ struct VertexLayout {
     std::uint32_t frame_offset;  ///< the position is at 0
     std::uint32_t uv_offset;
     std::uint32_t stride;  ///< 16 in the default forms
+    bool has_gaps;         ///< some bytes belong to no part; they are 0
 };
 
 constexpr VertexLayout vertex_layout(PositionForm position, FrameForm frame, UvForm uv) {
@@ -269,6 +270,8 @@ constexpr VertexLayout vertex_layout(PositionForm position, FrameForm frame, UvF
     layout.frame_offset = align(position_bytes(position), wide_frame);
     layout.uv_offset = align(layout.frame_offset + frame_bytes(frame), wide_uv);
     layout.stride = align(layout.uv_offset + uv_bytes(uv), wide);
+    layout.has_gaps =
+        layout.stride != position_bytes(position) + frame_bytes(frame) + uv_bytes(uv);
     return layout;
 }
 static_assert(vertex_layout(PositionForm::quantised, FrameForm::quat48, UvForm::quantised).stride ==
