@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "mesh-format/encode_png.h"
-#include "mesh-format/io.h"
+#include "common/encode_png.h"
+#include "common/io.h"
 
 namespace assets {
 namespace {
@@ -39,10 +39,10 @@ float srgb_from_linear(float value) {
 }
 
 void write_png(const std::filesystem::path& path, const Image& image) {
-    using mesh_format::PngPicture;
+    using common::PngPicture;
     const auto size = static_cast<std::uint32_t>(image.size);
-    mesh_format::OutputFile file(path);
-    file.write(mesh_format::encode_png(
+    common::OutputFile file(path);
+    file.write(common::encode_png(
         {.width = size,
          .height = size,
          .channels = image.channels == 1 ? PngPicture::Channels::grey : PngPicture::Channels::rgb,

@@ -6,21 +6,22 @@
 #include <algorithm>
 #include <thread>
 
-#include "cw2-bake/chunks.h"
-#include "cw2-bake/compress.h"
+#include "common/file_kind.h"
+#include "cw2-bake/base/progress.h"
+#include "cw2-bake/geometry/chunks.h"
+#include "cw2-bake/geometry/compress.h"
+#include "cw2-bake/geometry/normals.h"
+#include "cw2-bake/geometry/quantise.h"
+#include "cw2-bake/geometry/tangents.h"
+#include "cw2-bake/geometry/up_axis.h"
+#include "cw2-bake/geometry/weld.h"
+#include "cw2-bake/gltf/read_gltf.h"
+#include "cw2-bake/gltf/write_gltf.h"
 #include "cw2-bake/input_files.h"
-#include "cw2-bake/normals.h"
-#include "cw2-bake/progress.h"
-#include "cw2-bake/quantise.h"
-#include "cw2-bake/read_gltf.h"
-#include "cw2-bake/read_obj.h"
+#include "cw2-bake/obj/read_obj.h"
 #include "cw2-bake/report.h"
 #include "cw2-bake/stats.h"
-#include "cw2-bake/tangents.h"
-#include "cw2-bake/textures.h"
-#include "cw2-bake/up_axis.h"
-#include "cw2-bake/weld.h"
-#include "cw2-bake/write_gltf.h"
+#include "cw2-bake/textures/textures.h"
 #include "mesh-format/decode.h"
 #include "mesh-format/file.h"
 
@@ -32,6 +33,10 @@ using mesh_format::kNoTexture;
 using mesh_format::MaterialRecord;
 using mesh_format::StringRef;
 using mesh_format::TextureRecord;
+
+bool is_gltf(const std::filesystem::path& path) {
+    return common::file_kind(path) == common::FileKind::gltf;
+}
 
 SourceScene read_scene(const std::filesystem::path& path, const Warn& warn) {
     return is_gltf(path) ? read_gltf(path, warn) : read_obj(path, warn);
@@ -155,9 +160,21 @@ void add_start(const SourceScene& source, mesh_format::SceneRecord& record) {
     }
 }
 
+/// Returns the file's size in bytes.
+std::uint64_t write_baked(const mesh_format::Document& document,
+                          std::span<const std::span<const std::byte>> payloads,
+                          const std::filesystem::path& path) {
+    common::OutputFile file(path);
+    const std::uint64_t bytes =
+        mesh_format::write(document, payloads, path.string(),
+                           [&file](std::span<const std::byte> part) { file.write(part); });
+    file.commit();
+    return bytes;
+}
+
 void write_stats(const Settings& settings, const BakeStats& stats) {
     const std::string json = to_json(stats, std::filesystem::file_size(settings.input));
-    mesh_format::OutputFile file(*settings.stats);
+    common::OutputFile file(*settings.stats);
     file.write(std::as_bytes(std::span(json)));
     file.commit();
 }
@@ -168,7 +185,7 @@ std::string export_baked(const Settings& settings, const Warn& warn) {
     if (!is_gltf(settings.output))
         throw BakeError(settings.input.string() + ": is baked already; -o FILE.glb exports it");
     refuse_overwriting(settings, {settings.input});
-    const mesh_format::MappedFile file(settings.input);
+    const common::MappedFile file(settings.input);
     const std::string name = settings.input.string();
     mesh_format::Document document = mesh_format::parse(file.bytes(), name);
     const mesh_format::DecodedGeometry decoded = decode(document, name);
@@ -233,9 +250,9 @@ std::string bake(const Settings& settings, const Warn& warn) {
         document.indices = geometry.indices;
     }
     const bool exports = is_gltf(settings.output);
-    const std::uint64_t bytes =
-        exports ? write_gltf(document, tables.payloads, settings.output, warn)
-                : mesh_format::write(document, tables.payloads, settings.output);
+    const std::uint64_t bytes = exports
+                                    ? write_gltf(document, tables.payloads, settings.output, warn)
+                                    : write_baked(document, tables.payloads, settings.output);
     clock.end("write");
     if (settings.depfile) write_depfile(*settings.depfile, settings.output, inputs);
     if (settings.stats)

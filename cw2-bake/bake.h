@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "cw2-bake/diagnostics.h"
+#include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/settings.h"
 
 namespace bake {
 
 /// Bakes settings.input into settings.output and returns the closing summary. Throws BakeError or
-/// mesh_format::FileError; the output is then as it was.
+/// common::FileError; the output is then as it was.
 std::string bake(const Settings& settings, const Warn& warn);
 
 /// Writes settings.input, a .cw2mesh file, as a glTF to settings.output and returns a summary.

@@ -7,8 +7,8 @@
 #include <string>
 #include <system_error>
 
-#include "cw2-bake/diagnostics.h"
-#include "mesh-format/io.h"
+#include "common/io.h"
+#include "cw2-bake/base/diagnostics.h"
 
 namespace bake {
 namespace {
@@ -88,7 +88,7 @@ void write_depfile(const fs::path& depfile, const fs::path& output,
     std::string text = escaped(output) + ':';
     for (const fs::path& input : inputs) text += " \\\n  " + escaped(input);
     text += '\n';
-    mesh_format::OutputFile file(depfile);
+    common::OutputFile file(depfile);
     file.write(std::as_bytes(std::span(text)));
     file.commit();
 }

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/settings.h"
-#include "cw2-bake/source_scene.h"
 
 namespace bake {
 
@@ -18,7 +18,7 @@ std::vector<std::filesystem::path> input_files(const SourceScene& scene);
 void refuse_overwriting(const Settings& settings, const std::vector<std::filesystem::path>& inputs);
 
 /// Writes the rule "output: inputs" for make and ninja. Throws BakeError for a name that make
-/// cannot take (one with a line break), and mesh_format::FileError.
+/// cannot take (one with a line break), and common::FileError.
 void write_depfile(const std::filesystem::path& depfile, const std::filesystem::path& output,
                    const std::vector<std::filesystem::path>& inputs);
 

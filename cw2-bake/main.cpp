@@ -5,20 +5,20 @@
 #include <exception>
 #include <string>
 
+#include "common/io.h"
 #include "cw2-bake/bake.h"
 #include "cw2-bake/report.h"
 #include "cw2-bake/settings.h"
 #include "mesh-format/file.h"
-#include "mesh-format/io.h"
 
 namespace {
 
 void tell(const std::string& message) {
-    std::fprintf(stderr, "cw2-bake: %s\n", mesh_format::one_line(message).c_str());
+    std::fprintf(stderr, "cw2-bake: %s\n", common::one_line(message).c_str());
 }
 
 void inspect(const bake::Settings& settings) {
-    const mesh_format::MappedFile file(settings.input);
+    const common::MappedFile file(settings.input);
     const auto document = mesh_format::parse(file.bytes(), settings.input.string());
     const std::string text = settings.json ? bake::inspection_json(document, file.bytes().size())
                                            : settings.input.string() + '\n' +

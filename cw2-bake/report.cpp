@@ -5,18 +5,18 @@
 #include <algorithm>
 #include <iterator>
 
-#include "mesh-format/quoted_text.h"
+#include "common/quoted_text.h"
 
 namespace bake {
 
 namespace {
 
+using common::quoted_text;
 using mesh_format::Document;
 using mesh_format::FrameForm;
 using mesh_format::MaterialRecord;
 using mesh_format::MeshRecord;
 using mesh_format::PositionForm;
-using mesh_format::quoted_text;
 using mesh_format::SourceRecord;
 using mesh_format::TextureFormat;
 using mesh_format::TextureRecord;

@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "cw2-bake/write_gltf.h"
+#include "common/file_kind.h"
 
 namespace bake {
 
@@ -92,7 +92,7 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     if (settings.output.empty()) {
         settings.output = std::filesystem::path(settings.input).replace_extension("cw2mesh");
     }
-    settings.is_baked = settings.input.extension() == ".cw2mesh";
+    settings.is_baked = common::file_kind(settings.input) == common::FileKind::baked;
     if (settings.inspect) return settings;
     for (const char* option : {"--up", "--tangent-frame", "--positions", "--textures", "--compress",
                                "--threads", "--stats"}) {
@@ -100,7 +100,7 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
             throw UsageError(fmt::format("{} is not for files that are baked already", option));
         }
     }
-    if (is_gltf(settings.output)) {
+    if (common::file_kind(settings.output) == common::FileKind::gltf) {
         if (settings.compress) throw UsageError("--compress is for .cw2mesh files");
         // A glTF holds floats and PNGs: they should be as good as the source.
         if (app.count("--tangent-frame") == 0) settings.frame_form = FrameForm::f32;

@@ -5,15 +5,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "cw2-bake/textures/texture.h"
 #include "mesh-format/layout.h"
 
 namespace bake {
-
-enum class TextureMode {
-    bc,        ///< in blocks, where that is good enough; roughness made fit for its normal map
-    lossless,  ///< 8 bits a channel
-    none,      ///< materials keep their factors only
-};
 
 struct Settings {
     std::filesystem::path input;

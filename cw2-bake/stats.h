@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "cw2-bake/chunks.h"
+#include "cw2-bake/geometry/chunks.h"
 #include "mesh-format/layout.h"
 
 namespace bake {

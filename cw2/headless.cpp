@@ -11,14 +11,15 @@
 #include <utility>
 #include <vector>
 
-#include "cw2/image_file.h"
-#include "cw2/legend.h"
-#include "cw2/pipelines.h"
-#include "cw2/renderer.h"
-#include "cw2/resources.h"
-#include "cw2/scene.h"
-#include "mesh-format/io.h"
-#include "mesh-format/quoted_text.h"
+#include "common/io.h"
+#include "common/quoted_text.h"
+#include "cw2/options/frame_of.h"
+#include "cw2/render/image_file.h"
+#include "cw2/render/legend.h"
+#include "cw2/render/pipelines.h"
+#include "cw2/render/renderer.h"
+#include "cw2/render/scene.h"
+#include "cw2/vulkan/resources.h"
 
 namespace cw2 {
 
@@ -97,7 +98,7 @@ std::string stats_of(const Device& device, const Scene& scene, const Timings& ti
         "  \"load_ms\": {:.3f},\n  \"first_frame_ms\": {:.3f},\n  \"save_ms\": {:.3f},\n"
         "  \"bench_frames\": {},\n  \"median_frame_ms\": {:.3f},\n"
         "  \"median_gpu_ms\": {:.3f}\n}}\n",
-        mesh_format::quoted_text(device.properties().deviceName), scene.triangle_count(),
+        common::quoted_text(device.properties().deviceName), scene.triangle_count(),
         scene.draws().size(), timings.load, timings.first_frame, timings.save,
         timings.frames.size(), median(timings.frames), median(timings.gpu_frames));
 }
@@ -225,7 +226,7 @@ FrameSettings settings_for(ImageKind kind, const Options& options, const Scene& 
     return settings;
 }
 
-/// Throws mesh_format::FileError where a picture could not be written, before any is drawn.
+/// Throws common::FileError where a picture could not be written, before any is drawn.
 void require_writable(const Options& options) {
     const FrameRange range = options.frames.value_or(FrameRange{0, 0, 1});
     std::optional<std::filesystem::path> folder;
@@ -233,7 +234,7 @@ void require_writable(const Options& options) {
         const std::filesystem::path path = file_of(options, frame);
         if (path.parent_path() == folder) continue;
         folder = path.parent_path();
-        const mesh_format::OutputFile leaves_no_trace(path);
+        const common::OutputFile leaves_no_trace(path);
     }
 }
 
@@ -244,7 +245,7 @@ void render_to_file(const Device& device, const Options& options) {
     require_size(options, device);
     require_writable(options);
     // Made now, so that no picture is there without the statistics that were asked for.
-    std::optional<mesh_format::OutputFile> stats;
+    std::optional<common::OutputFile> stats;
     if (options.stats) stats.emplace(*options.stats);
 
     Timings timings;

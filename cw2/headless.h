@@ -1,8 +1,8 @@
 // Pictures to files, with no display and no window system.
 #pragma once
 
-#include "cw2/device.h"
-#include "cw2/options.h"
+#include "cw2/options/options.h"
+#include "cw2/vulkan/device.h"
 
 namespace cw2 {
 

@@ -12,19 +12,20 @@
 #include <string_view>
 #include <utility>
 
-#include "cw2/file_watch.h"
-#include "cw2/image_file.h"
-#include "cw2/panel.h"
-#include "cw2/picker.h"
-#include "cw2/pointer.h"
-#include "cw2/presenter.h"
-#include "cw2/scene.h"
-#include "cw2/shader_compiler.h"
-#include "cw2/title.h"
-#include "cw2/ui_pass.h"
-#include "cw2/viewer_state.h"
-#include "cw2/window.h"
-#include "mesh-format/io.h"
+#include "common/io.h"
+#include "cw2/options/frame_of.h"
+#include "cw2/render/image_file.h"
+#include "cw2/render/picker.h"
+#include "cw2/render/scene.h"
+#include "cw2/render/shader_compiler.h"
+#include "cw2/window/file_watch.h"
+#include "cw2/window/panel.h"
+#include "cw2/window/pointer.h"
+#include "cw2/window/presenter.h"
+#include "cw2/window/title.h"
+#include "cw2/window/ui_pass.h"
+#include "cw2/window/viewer_state.h"
+#include "cw2/window/window.h"
 
 namespace cw2 {
 
@@ -258,7 +259,7 @@ class Session {
             const std::string name = new_file_name(".toml");
             write_config(name, options);
             tell(name, "saved " + name);
-        } catch (const mesh_format::FileError& error) {
+        } catch (const common::FileError& error) {
             report(error.what());
         }
     }
@@ -313,7 +314,7 @@ class Session {
             const std::string name = new_file_name(".png");
             write_image(name, picture->extent.width, picture->extent.height, picture->pixels);
             tell(name, "saved " + name);
-        } catch (const mesh_format::FileError& error) {
+        } catch (const common::FileError& error) {
             report(error.what());
         }
         wanted_ = Shot::none;

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "cw2/options.h"
+#include "cw2/options/options.h"
 
 namespace cw2 {
 

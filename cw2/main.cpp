@@ -2,17 +2,17 @@
 #include <cstdio>
 #include <exception>
 
-#include "cw2/device.h"
+#include "common/io.h"
 #include "cw2/headless.h"
 #include "cw2/interactive.h"
-#include "cw2/options.h"
-#include "cw2/scene.h"
-#include "mesh-format/io.h"
+#include "cw2/options/options.h"
+#include "cw2/render/scene.h"
+#include "cw2/vulkan/device.h"
 
 namespace {
 
 void tell(const char* message) {
-    std::fprintf(stderr, "cw2: %s\n", mesh_format::one_line(message).c_str());
+    std::fprintf(stderr, "cw2: %s\n", common::one_line(message).c_str());
 }
 
 int run(const cw2::Options& options) {

@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-#include "cw2/image_file.h"
-#include "cw2/legend.h"
+#include "cw2/render/image_file.h"
+#include "cw2/render/legend.h"
 #include "shaders/false_color.h"
 
 namespace {

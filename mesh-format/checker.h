@@ -15,7 +15,7 @@ class Checker {
     explicit Checker(std::string_view name) : name_(name) {}
 
     [[noreturn]] void fail(const std::string& what) const {
-        throw FileError(std::string(name_) + ": " + what);
+        throw FormatError(std::string(name_) + ": " + what);
     }
     void require(bool condition, const char* what) const {
         if (!condition) fail(what);

@@ -74,7 +74,7 @@ DecodedGeometry decode(Document& document, std::string_view name) {
     const std::uint64_t claimed = document.scene.vertex_bytes / kLargestRatio +
                                   document.scene.index_count / kLargestRatio * 2;
     if (claimed > stored) {
-        throw FileError(fmt::format("{}: the scene's sizes are implausible", name));
+        throw FormatError(fmt::format("{}: the scene's sizes are implausible", name));
     }
     DecodedGeometry geometry;
     geometry.vertices.resize(document.scene.vertex_bytes);
@@ -86,7 +86,7 @@ DecodedGeometry decode(Document& document, std::string_view name) {
         const MeshRecord& mesh = document.meshes[i];
         if (!decode_vertices(mesh, vertices[i], geometry.vertices.data() + mesh.vertex_offset) ||
             !decode_indices(mesh, indices[i], geometry.indices.data() + mesh.first_index)) {
-            throw FileError(fmt::format("{}: mesh {}: its encoded geometry is damaged", name, i));
+            throw FormatError(fmt::format("{}: mesh {}: its encoded geometry is damaged", name, i));
         }
     });
     document.vertices = geometry.vertices;

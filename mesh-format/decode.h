@@ -18,8 +18,8 @@ struct DecodedGeometry {
 };
 
 /// Decodes an encoded document mesh by mesh, in parallel, and checks the result, which `document`
-/// then refers to; leaves any other as it is. Throws FileError, which calls the file `name`, where
-/// the sections are damaged, or claim to be more than a thousand times their stored size.
+/// then refers to; leaves any other as it is. Throws FormatError, which calls the file `name`,
+/// where the sections are damaged, or claim to be more than a thousand times their stored size.
 DecodedGeometry decode(Document& document, std::string_view name);
 
 }  // namespace mesh_format

@@ -161,7 +161,7 @@ Document parse(std::span<const std::byte> bytes, std::string_view name, Payloads
 }
 
 std::uint64_t write(const Document& document, std::span<const std::span<const std::byte>> payloads,
-                    const std::filesystem::path& path) {
+                    std::string_view name, const Sink& sink) {
     assert(payloads.size() == document.textures.size());
     std::uint64_t texel_bytes = 0;
     for (std::size_t i = 0; i < payloads.size(); ++i) {
@@ -169,7 +169,7 @@ std::uint64_t write(const Document& document, std::span<const std::span<const st
         assert(checksum(payloads[i]) == document.textures[i].checksum);
         texel_bytes += payloads[i].size();
     }
-    check(document, texel_bytes, path.string());
+    check(document, texel_bytes, name);
 
     constexpr auto kTexels = static_cast<std::size_t>(SectionKind::texels);
     const std::array<std::span<const std::byte>, kSectionCount> contents{
@@ -201,17 +201,15 @@ std::uint64_t write(const Document& document, std::span<const std::span<const st
     header.file_size = end;
     header.checksum = header_checksum(header);
 
-    OutputFile file(path);
-    file.write(as_bytes(&header, 1));
+    sink(as_bytes(&header, 1));
     std::uint64_t position = sizeof(Header);
     for (std::size_t k = 0; k < kSectionCount; ++k) {
         static constexpr std::byte kPadding[kSectionAlignment] = {};
-        file.write(std::span(kPadding).first(header.sections[k].offset - position));
-        file.write(contents[k]);
-        for (const auto payload : k == kTexels ? payloads : payloads.first(0)) file.write(payload);
+        sink(std::span(kPadding).first(header.sections[k].offset - position));
+        sink(contents[k]);
+        for (const auto payload : k == kTexels ? payloads : payloads.first(0)) sink(payload);
         position = header.sections[k].offset + header.sections[k].size;
     }
-    file.commit();
     return header.file_size;
 }
 

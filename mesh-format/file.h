@@ -1,14 +1,21 @@
 // Bytes to a checked document, and a document to bytes.
 #pragma once
 
-#include <filesystem>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 
-#include "mesh-format/io.h"
 #include "mesh-format/layout.h"
 
 namespace mesh_format {
+
+/// Bytes that are no file of this format; what() is one line "NAME: what is wrong".
+class FormatError : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 /// The contents of a file. The spans point into memory that someone else keeps.
 struct Document {
@@ -36,7 +43,7 @@ struct Document {
     }
 };
 
-/// Throws FileError, which calls the document `name`, unless everything in it is in order: every
+/// Throws FormatError, which calls the document `name`, unless everything in it is in order: every
 /// offset, every index, every 32-bit float finite. The vertices and indices of an encoded document
 /// can only be checked once they are decoded.
 void check(const Document& document, std::string_view name);
@@ -49,17 +56,20 @@ enum class Payloads {
 
 /// Checks `bytes` completely and returns the document in it: magic, version, sizes, checksums, and
 /// what check() asks. `bytes` starts at a multiple of 16 and must outlive the document; `name` is
-/// used in messages. Throws FileError; never reads outside `bytes`, allocates nothing that grows
+/// used in messages. Throws FormatError; never reads outside `bytes`, allocates nothing that grows
 /// with the input.
 Document parse(std::span<const std::byte> bytes, std::string_view name,
                Payloads payloads = Payloads::checked);
 
-/// Throws FileError unless `document` passes check(), then writes it beside `path` and renames it,
-/// so that `path` holds either its old contents or the whole new file. `payloads` are those of its
+/// Takes the next bytes of a file.
+using Sink = std::function<void(std::span<const std::byte>)>;
+
+/// Throws FormatError, which calls the document `name`, unless `document` passes check(), then
+/// gives the file's bytes to `sink`, from the first to the last. `payloads` are those of its
 /// textures, one each, and take the place of Document::texels; their checksums are in the records.
 /// The same document gives the same bytes. Returns the file's size in bytes.
 std::uint64_t write(const Document& document, std::span<const std::span<const std::byte>> payloads,
-                    const std::filesystem::path& path);
+                    std::string_view name, const Sink& sink);
 
 /// Detects altered bytes, no defence against intent: 64-bit words, little-endian and the last one
 /// zero-padded, are folded into four lanes (word i into lane i mod 4) by

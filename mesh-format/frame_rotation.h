@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "mesh-format/every_cpu.h"
+#include "common/every_cpu.h"
 #include "mesh-format/tangent_frame.h"
 
 namespace mesh_format {

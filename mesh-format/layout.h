@@ -270,8 +270,7 @@ constexpr VertexLayout vertex_layout(PositionForm position, FrameForm frame, UvF
     layout.frame_offset = align(position_bytes(position), wide_frame);
     layout.uv_offset = align(layout.frame_offset + frame_bytes(frame), wide_uv);
     layout.stride = align(layout.uv_offset + uv_bytes(uv), wide);
-    layout.has_gaps =
-        layout.stride != position_bytes(position) + frame_bytes(frame) + uv_bytes(uv);
+    layout.has_gaps = layout.stride != position_bytes(position) + frame_bytes(frame) + uv_bytes(uv);
     return layout;
 }
 static_assert(vertex_layout(PositionForm::quantised, FrameForm::quat48, UvForm::quantised).stride ==

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "mesh-format/every_cpu.h"
+#include "common/every_cpu.h"
 #include "mesh-format/frame_constants.h"
 #include "mesh-format/frame_rotation.h"
 

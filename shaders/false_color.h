@@ -21,13 +21,15 @@ using std::sin;
 #endif
 
 // What false colour shows of a linear RGB value: its luminance (Rec. 709).
-CW2_FUNCTION float luminance_of(vec3 value) { return dot(value, vec3(0.2126f, 0.7152f, 0.0722f)); }
+CW2_FUNCTION float luminance_of(vec3 value) {
+    return dot(value, vec3(0.2126f, 0.7152f, 0.0722f));
+}
 
 // Where a value lies between low and high, clamped to [0, 1]: by its logarithm if low is positive,
 // else linearly.
 CW2_FUNCTION float false_color_position(float value, float low, float high) {
-    const float position = low > 0.0f ? log(max(value, low) / low) / log(high / low)
-                                      : (value - low) / (high - low);
+    const float position =
+        low > 0.0f ? log(max(value, low) / low) / log(high / low) : (value - low) / (high - low);
     return min(max(position, 0.0f), 1.0f);
 }
 

@@ -89,7 +89,7 @@ CW2_CONSTANT uint kMetalnessMapConstant = 7;  // the same
 CW2_CONSTANT uint kFalseColorConstant = 8;    // 0: exposure, else false colour
 CW2_CONSTANT uint kSpecializationCount = 9;
 
-// What a fragment shows; cw2/view.h names them.
+// What a fragment shows; cw2/render/view.h names them.
 CW2_CONSTANT uint kViewShaded = 0;
 CW2_CONSTANT uint kViewNormal = 1;
 CW2_CONSTANT uint kViewVertexNormal = 2;

@@ -1,40 +1,64 @@
 #!/usr/bin/env bash
-# Checks who includes whom, and that Vulkan objects are destroyed in one header only.
+# Checks who includes whom, that each folder includes only those below it, that what a file includes
+# from another folder it uses, and that Vulkan objects are destroyed in one header only.
 # Usage: check_includes.sh [ROOT OF THE REPOSITORY]. Prints PATH:LINE: what is wrong, exits 1.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 set -f
 
-# files | what they may include besides the standard library and POSIX
+# The folders of each program from the lowest to the highest; the program's own files stand above.
+layers='
+cw2-bake | base textures geometry obj gltf
+cw2      | vulkan render options window
+'
+
+# files | what they may include besides the standard library, POSIX and, within a program, files of
+# their own folder and of lower ones
 rules='
+common/*                | common/*
+common/encode_png.*     | png.h
 mesh-format/*           | mesh-format/*
+mesh-format/tangent_frame.cpp | common/every_cpu.h
+mesh-format/frame_rotation.h | common/every_cpu.h
 mesh-format/decode.cpp  | meshoptimizer.h zstd.h fmt/* tbb/*
-mesh-format/encode_png.* | png.h
-cw2-bake/*              | mesh-format/* cw2-bake/* glm/* fmt/* tbb/* CLI/*
-cw2-bake/*              | meshoptimizer.h zstd.h xxhash.h
-cw2-bake/read_*.cpp     | fast_float/*
-cw2-bake/gltf_*         | tiny_gltf.h nlohmann/json.hpp
-cw2-bake/write_gltf.*   | nlohmann/json.hpp
-cw2-bake/read_common_*  | png.h jpeglib.h jerror.h
-cw2-bake/obj_parser.cpp | fast_float/*
-cw2-bake/digits.h       | emmintrin.h
-cw2-bake/image_reader.* | OpenImageIO/*
-cw2/*                   | mesh-format/* cw2/* shaders/interop.h shaders/false_color.h *.vert.h *.frag.h glm/* fmt/*
-cw2/*                   | tbb/* CLI/* vulkan/* glslang/* SPIRV/* Imf*.h
-cw2/config.cpp          | toml++/toml.h
-cw2/window*             | GLFW/*
-cw2/ui_pass.cpp         | imgui.h backends/imgui_impl_*
-cw2/panel*.cpp          | imgui.h
+cw2-bake/*              | common/* mesh-format/* glm/* fmt/* tbb/* CLI/* meshoptimizer.h zstd.h xxhash.h
+cw2-bake/obj/*          | fast_float/* emmintrin.h
+cw2-bake/gltf/*         | tiny_gltf.h nlohmann/json.hpp
+cw2-bake/textures/*     | png.h jpeglib.h jerror.h OpenImageIO/*
+cw2/*                   | common/* mesh-format/* shaders/interop.h shaders/false_color.h glm/* fmt/* tbb/* vulkan/*
+cw2/render/*            | *.vert.h *.frag.h glslang/* SPIRV/* Imf*.h
+cw2/options/*           | CLI/* toml++/toml.h
+cw2/window/*            | GLFW/* imgui.h backends/imgui_impl_*
 shaders/*               | mesh-format/* shaders/*
 shaders/*.h             | glm/*
 '
 standard='^([a-z0-9_]+|(dlfcn|fcntl|malloc|unistd)\.h|sys/[a-z]+\.h)$'
 status=0
 
+# The place of a file of a program among the program's layers, from 0; fails for other files.
+layer_of() {
+    local path=$1 program folders folder place=0
+    while IFS='|' read -r program folders; do
+        program=${program%% *}
+        [[ -n $program && $path == "$program"/* ]] || continue
+        for folder in $folders; do
+            [[ $path != "$program/$folder"/* ]] || { echo "$place" && return; }
+            place=$((place + 1))
+        done
+        [[ $path != "$program"/*/* ]] || { echo "$path: its folder has no layer" >&2 && return 1; }
+        echo "$place" && return
+    done <<<"$layers"
+    return 1
+}
+
 # Whether the file `path` may include `header`.
 allowed() {
-    local path=$1 header=$2 files headers pattern
+    local path=$1 header=$2 files headers pattern own theirs
     [[ ! $header =~ $standard ]] || return 0
+    if [[ ${path%%/*} == "${header%%/*}" ]] && own=$(layer_of "$path"); then
+        theirs=$(layer_of "$header") && [[ $theirs -le $own ]] && return 0
+        return 1
+    fi
     while IFS='|' read -r files headers; do
         # shellcheck disable=SC2053 # the table holds patterns
         [[ -n $files && $path == ${files%% *} ]] || continue
@@ -46,15 +70,16 @@ allowed() {
     return 1
 }
 
-includes=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*["<]' mesh-format cw2-bake cw2 shaders)
+includes=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*["<]' \
+    common mesh-format cw2-bake cw2 shaders)
 while IFS=: read -r path line text; do
     header=${text#*[\"<]}
     header=${header%%[\">]*}
     allowed "$path" "$header" || { echo "$path:$line: may not include $header" && status=1; }
 done <<<"$includes"
 
-destroys=$(grep -rnE '\bvkDestroy[A-Z]' cw2 --include='*.cpp' --include='*.h' --exclude=vk_handle.h) || true
+destroys=$(grep -rnE '\bvkDestroy[A-Z]' cw2 --include='*.cpp' --include='*.h' --exclude=handle.h) || true
 while IFS=: read -r path line text; do
-    echo "$path:$line: only cw2/vk_handle.h may destroy: ${text#"${text%%[! ]*}"}" && status=1
+    echo "$path:$line: only cw2/vulkan/handle.h may destroy: ${text#"${text%%[! ]*}"}" && status=1
 done < <([[ -z $destroys ]] || echo "$destroys")
 exit $status

@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cw2/device.h"
-#include "cw2/resources.h"
+#include "cw2/vulkan/device.h"
+#include "cw2/vulkan/resources.h"
 #include "mesh-format/layout.h"
 
 namespace {

@@ -12,11 +12,11 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "cw2-bake/normals.h"
-#include "cw2-bake/read_gltf.h"
-#include "cw2-bake/read_obj.h"
-#include "cw2-bake/tangents.h"
-#include "cw2-bake/weld.h"
+#include "cw2-bake/geometry/normals.h"
+#include "cw2-bake/geometry/tangents.h"
+#include "cw2-bake/geometry/weld.h"
+#include "cw2-bake/gltf/read_gltf.h"
+#include "cw2-bake/obj/read_obj.h"
 #include "mesh-format/file.h"
 #include "mesh-format/tangent_frame.h"
 
@@ -104,7 +104,7 @@ void bench(const char* obj, const char* baked, const char* gltf) {
     double sum = 0;
     for (const double angle : angles) sum += angle;
     const double theirs = sum / static_cast<double>(angles.size());
-    const mesh_format::MappedFile file(baked);
+    const common::MappedFile file(baked);
     const float ours = mesh_format::parse(file.bytes(), baked).scene.frame_error_mean;
     std::printf("mean %.4f beside %.4f degrees, %.0f times as close (their median %.4f)\n", ours,
                 theirs, theirs / ours, angles[angles.size() / 2]);

@@ -10,10 +10,10 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "cw2-bake/normals.h"
-#include "cw2-bake/read_obj.h"
-#include "cw2-bake/tangents.h"
-#include "cw2-bake/weld.h"
+#include "cw2-bake/geometry/normals.h"
+#include "cw2-bake/geometry/tangents.h"
+#include "cw2-bake/geometry/weld.h"
+#include "cw2-bake/obj/read_obj.h"
 #include "tests/oracle/corner_mesh.h"
 #include "tests/oracle/package.h"
 

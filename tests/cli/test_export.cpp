@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "common/io.h"
 #include "mesh-format/file.h"
 #include "mesh-format/tangent_frame.h"
 #include "tests/cli/scene_folder.h"
@@ -53,7 +54,7 @@ class Export : public SceneFolder {
  protected:
     /// The baked file, which stays mapped until the next call.
     Document open(const std::string& name) {
-        const MappedFile& file = files_.emplace_back(here(name));
+        const common::MappedFile& file = files_.emplace_back(here(name));
         return parse(file.bytes(), name);
     }
     std::vector<std::string> texts(const Document& document, const auto& records) {
@@ -63,7 +64,7 @@ class Export : public SceneFolder {
     }
 
  private:
-    std::vector<MappedFile> files_;
+    std::vector<common::MappedFile> files_;
 };
 
 const std::vector<std::string> kExact{"--positions", "f32",      "--tangent-frame", "f32",

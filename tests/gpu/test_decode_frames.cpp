@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "cw2/device.h"
-#include "cw2/resources.h"
-#include "cw2/vk_handle.h"
+#include "cw2/vulkan/device.h"
+#include "cw2/vulkan/handle.h"
+#include "cw2/vulkan/resources.h"
 #include "decode_frames.comp.h"
 #include "mesh-format/tangent_frame.h"
 #include "tests/frame_truth.h"

@@ -11,9 +11,10 @@
 #include <memory>
 #include <string>
 
-#include "cw2-bake/read_common_image.h"
+#include "common/io.h"
+#include "cw2-bake/textures/read_common_image.h"
+#include "cw2-bake/textures/read_image.h"
 #include "image_files.h"
-#include "mesh-format/io.h"
 
 // After <cstdio>, which it needs.
 #include <jpeglib.h>
@@ -26,7 +27,7 @@ struct Closer {
 using File = std::unique_ptr<std::FILE, Closer>;
 
 std::optional<bake::Image> read_common(const std::filesystem::path& path) {
-    const mesh_format::MappedFile file(path);
+    const common::MappedFile file(path);
     return bake::read_common_image(file.bytes());
 }
 
@@ -188,7 +189,7 @@ TEST(CommonImages, WhatEndsEarlyIsRefusedWhereverItEnds) {
     const TemporaryFolder folder;
     for (const char* name : {"a.png", "a.jpg"}) {
         write_image(folder / name, 16, 16, 3, [](int x, int y) { return texel(x, y, 3); });
-        const mesh_format::MappedFile file(folder / name);
+        const common::MappedFile file(folder / name);
         for (std::size_t size = 8; size < file.bytes().size(); ++size) {
             EXPECT_THROW(bake::read_common_image(file.bytes().first(size)), bake::ImageError)
                 << name << ' ' << size;
@@ -246,7 +247,7 @@ TEST(CommonImages, SizesThatAFileCannotHoldAreRefusedBeforeTheyAreAllocated) {
     write_empty_jpeg(folder / "b.jpg", false);
     write_empty_jpeg(folder / "c.jpg", true);
     for (const char* name : {"a.png", "b.jpg", "c.jpg"}) {
-        const mesh_format::MappedFile file(folder / name);
+        const common::MappedFile file(folder / name);
         const MemoryLimit limit(64 << 20);
         try {
             bake::read_common_image(file.bytes());

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "cw2-bake/textures.h"
+#include "cw2-bake/textures/textures.h"
 #include "image_files.h"
 #include "mesh-format/blocks.h"
 

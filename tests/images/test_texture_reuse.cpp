@@ -7,8 +7,9 @@
 #include <set>
 
 #include "cw2-bake/bake.h"
-#include "cw2-bake/read_obj.h"
-#include "cw2-bake/texture_reuse.h"
+#include "cw2-bake/obj/read_obj.h"
+#include "cw2-bake/textures/reuse.h"
+#include "cw2-bake/textures/textures.h"
 #include "image_files.h"
 #include "mesh-format/file.h"
 
@@ -29,7 +30,7 @@ constexpr const char* kMaterials =
     "newmtl sand\nbump -bm 3 heights.png\nPr 0.5\n";
 
 Bytes bytes_of(const fs::path& path) {
-    const mesh_format::MappedFile file(path);
+    const common::MappedFile file(path);
     return {file.bytes().begin(), file.bytes().end()};
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cw2-bake/source_scene.h"
+#include "cw2-bake/base/source_scene.h"
 
 namespace oracle {
 

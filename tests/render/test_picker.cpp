@@ -9,8 +9,9 @@
 #include <random>
 
 #include "cw2/headless.h"
-#include "cw2/options.h"
-#include "cw2/picker.h"
+#include "cw2/options/frame_of.h"
+#include "cw2/options/options.h"
+#include "cw2/render/picker.h"
 #include "tests/render/drawing.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cw2-bake/read_gltf.h"
+#include "cw2-bake/gltf/read_gltf.h"
 #include "tests/support/gltf_writer.h"
 #include "tests/support/temporary_folder.h"
 

@@ -15,7 +15,7 @@
 #include <tuple>
 #include <vector>
 
-#include "cw2-bake/read_obj.h"
+#include "cw2-bake/obj/read_obj.h"
 
 /// A folder that vanishes with what is in it.
 class TempFolder {

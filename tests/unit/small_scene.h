@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "mesh-format/file.h"
-#include "tests/support/temporary_folder.h"
 
 namespace small_scene {
 
@@ -138,16 +137,19 @@ struct SmallScene {
     }
 };
 
-inline Bytes bytes_of(const std::filesystem::path& path) {
-    const MappedFile file(path);
-    return {file.bytes().begin(), file.bytes().end()};
+inline Bytes written(const Document& document,
+                     std::span<const std::span<const std::byte>> payloads) {
+    Bytes bytes;
+    const std::uint64_t size =
+        write(document, payloads, "the file", [&](std::span<const std::byte> part) {
+            bytes.insert(bytes.end(), part.begin(), part.end());
+        });
+    EXPECT_EQ(size, bytes.size());
+    return bytes;
 }
 
 inline Bytes written(const SmallScene& scene) {
-    const TemporaryFolder folder;
-    const std::uint64_t size = write(scene.document(), scene.payloads(), folder / "scene");
-    EXPECT_EQ(size, std::filesystem::file_size(folder / "scene"));
-    return bytes_of(folder / "scene");
+    return written(scene.document(), scene.payloads());
 }
 
 /// What parse() complains about, or an empty text.
@@ -155,7 +157,7 @@ inline std::string complaint(const Bytes& bytes) {
     try {
         parse(bytes, "the file");
         return {};
-    } catch (const FileError& error) {
+    } catch (const FormatError& error) {
         return error.what();
     }
 }

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "cw2-bake/block_compression.h"
+#include "cw2-bake/textures/block_compression.h"
 #include "mesh-format/blocks.h"
 
 namespace {

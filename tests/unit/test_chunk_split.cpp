@@ -8,8 +8,8 @@
 #include <mutex>
 #include <random>
 
-#include "cw2-bake/chunk_split.h"
-#include "cw2-bake/triangle_order.h"
+#include "cw2-bake/geometry/chunk_split.h"
+#include "cw2-bake/geometry/triangle_order.h"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <random>
 
-#include "cw2-bake/chunks.h"
-#include "cw2-bake/quantise.h"
+#include "cw2-bake/geometry/chunks.h"
+#include "cw2-bake/geometry/quantise.h"
 
 namespace {
 

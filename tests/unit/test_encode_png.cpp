@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "mesh-format/encode_png.h"
+#include "common/encode_png.h"
 
 namespace {
 
-using mesh_format::encode_png;
-using mesh_format::PngPicture;
+using common::encode_png;
+using common::PngPicture;
 using Channels = PngPicture::Channels;
 
 constexpr std::uint32_t kWidth = 7, kHeight = 5;

@@ -194,7 +194,7 @@ TEST(HostileFile, EncodedPartsMustFillTheirSections) {
 
 TEST(HostileFile, DocumentsOfImpossibleShapeAreRefused) {
     const auto expect_refused = [](const SmallScene& scene) {
-        EXPECT_THROW(check(scene.document(), "the file"), FileError);
+        EXPECT_THROW(check(scene.document(), "the file"), FormatError);
     };
     SmallScene many_vertices;
     many_vertices.meshes[1].vertex_count = kMaxMeshVertices + 1;

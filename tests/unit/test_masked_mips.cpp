@@ -5,10 +5,10 @@
 #include <random>
 #include <tuple>
 
-#include "cw2-bake/block_compression.h"
-#include "cw2-bake/mip_chain.h"
-#include "cw2-bake/srgb.h"
-#include "cw2-bake/texels.h"
+#include "cw2-bake/textures/block_compression.h"
+#include "cw2-bake/textures/mip_chain.h"
+#include "cw2-bake/textures/srgb.h"
+#include "cw2-bake/textures/texels.h"
 #include "mesh-format/blocks.h"
 
 namespace {

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <random>
 
-#include "cw2-bake/mip_chain.h"
-#include "cw2-bake/srgb.h"
-#include "cw2-bake/texels.h"
+#include "cw2-bake/textures/mip_chain.h"
+#include "cw2-bake/textures/srgb.h"
+#include "cw2-bake/textures/texels.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "cw2-bake/normals.h"
+#include "cw2-bake/geometry/normals.h"
 #include "obj_text.h"
 
 namespace {

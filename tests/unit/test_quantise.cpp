@@ -7,7 +7,7 @@
 #include <memory>
 #include <random>
 
-#include "cw2-bake/quantise.h"
+#include "cw2-bake/geometry/quantise.h"
 #include "mesh-format/tangent_frame.h"
 
 namespace {

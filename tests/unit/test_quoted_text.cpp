@@ -5,11 +5,11 @@
 #include <random>
 #include <string>
 
-#include "mesh-format/quoted_text.h"
+#include "common/quoted_text.h"
 
 namespace {
 
-using mesh_format::quoted_text;
+using common::quoted_text;
 using nlohmann::json;
 
 TEST(QuotedText, IsReadAsItWas) {

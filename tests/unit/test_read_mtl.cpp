@@ -1,6 +1,7 @@
 #include <cmath>
 
-#include "cw2-bake/read_mtl.h"
+#include "common/io.h"
+#include "cw2-bake/obj/read_mtl.h"
 #include "mesh-format/file.h"
 #include "obj_text.h"
 
@@ -193,7 +194,7 @@ TEST_F(ReadMtl, RefusesMalformedNumbersAtTheirLine) {
     EXPECT_THROW(bake::read_mtl(
                      folder_.path() / "no.mtl", [](std::string_view) { return true; },
                      [](const std::string&) {}),
-                 mesh_format::FileError);
+                 common::FileError);
 }
 
 }  // namespace

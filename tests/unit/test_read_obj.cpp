@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cw2-bake/read_obj.h"
+#include "cw2-bake/obj/read_obj.h"
 #include "obj_text.h"
 
 namespace {

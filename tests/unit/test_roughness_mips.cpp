@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "cw2-bake/roughness_mips.h"
+#include "cw2-bake/textures/roughness_mips.h"
 
 namespace {
 

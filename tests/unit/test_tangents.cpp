@@ -6,8 +6,8 @@
 #include <glm/trigonometric.hpp>
 #include <numbers>
 
-#include "cw2-bake/tangents.h"
-#include "cw2-bake/weld.h"
+#include "cw2-bake/geometry/tangents.h"
+#include "cw2-bake/geometry/weld.h"
 
 namespace {
 

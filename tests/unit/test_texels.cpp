@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "cw2-bake/texels.h"
+#include "cw2-bake/textures/texels.h"
 
 namespace {
 

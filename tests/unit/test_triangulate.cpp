@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "cw2-bake/triangulate.h"
+#include "cw2-bake/obj/triangulate.h"
 
 namespace {
 

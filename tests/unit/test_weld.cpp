@@ -5,8 +5,8 @@
 #include <map>
 #include <random>
 
-#include "cw2-bake/up_axis.h"
-#include "cw2-bake/weld.h"
+#include "cw2-bake/geometry/up_axis.h"
+#include "cw2-bake/geometry/weld.h"
 
 namespace {
 

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "cw2/config.h"
-#include "cw2/option_table.h"
-#include "cw2/options.h"
-#include "mesh-format/io.h"
+#include "common/io.h"
+#include "cw2/options/config.h"
+#include "cw2/options/option_table.h"
+#include "cw2/options/options.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
@@ -273,9 +273,9 @@ TEST(Config, WhatMakesNoSenseIsToldWithItsPlace) {
 
 TEST(Config, FilesThatCannotBeReadOrWrittenAreNoUsageErrors) {
     const TemporaryFolder folder;
-    EXPECT_THROW(parse({"a.cw2mesh", "--config", folder / "gone.toml"}), mesh_format::FileError);
-    EXPECT_THROW(parse({"a.cw2mesh", "--config", folder.path()}), mesh_format::FileError);
-    EXPECT_THROW(write_config(folder / "no/a.toml", {}), mesh_format::FileError);
+    EXPECT_THROW(parse({"a.cw2mesh", "--config", folder / "gone.toml"}), common::FileError);
+    EXPECT_THROW(parse({"a.cw2mesh", "--config", folder.path()}), common::FileError);
+    EXPECT_THROW(write_config(folder / "no/a.toml", {}), common::FileError);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "cw2/file_watch.h"
+#include "cw2/window/file_watch.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <glm/trigonometric.hpp>
 #include <random>
 
-#include "cw2/fly_camera.h"
+#include "cw2/window/fly_camera.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "cw2/frames.h"
+#include "cw2/render/frames.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cw2/legend.h"
+#include "cw2/render/legend.h"
 #include "shaders/false_color.h"
 
 namespace {

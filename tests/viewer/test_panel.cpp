@@ -8,7 +8,8 @@
 #include <sstream>
 #include <string>
 
-#include "cw2/panel.h"
+#include "cw2/options/frame_of.h"
+#include "cw2/window/panel.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {

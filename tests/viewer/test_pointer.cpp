@@ -1,7 +1,7 @@
 // What the mouse does in the picture.
 #include <gtest/gtest.h>
 
-#include "cw2/pointer.h"
+#include "cw2/window/pointer.h"
 
 namespace {
 

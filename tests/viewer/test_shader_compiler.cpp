@@ -6,9 +6,9 @@
 #include <span>
 #include <string>
 
-#include "cw2/pipelines.h"
-#include "cw2/shader_compiler.h"
-#include "mesh-format/io.h"
+#include "common/io.h"
+#include "cw2/render/pipelines.h"
+#include "cw2/render/shader_compiler.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
@@ -80,7 +80,7 @@ TEST_F(ShaderCompiler, AMissingShaderIsAFileError) {
     try {
         cw2::compile_shaders(root_.path());
         FAIL() << "compiled";
-    } catch (const mesh_format::FileError& error) {
+    } catch (const common::FileError& error) {
         EXPECT_TRUE(std::string(error.what()).starts_with(file("opaque.frag").string()))
             << error.what();
     }

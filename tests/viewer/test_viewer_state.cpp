@@ -4,7 +4,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "cw2/viewer_state.h"
+#include "cw2/options/frame_of.h"
+#include "cw2/window/viewer_state.h"
 
 namespace {
 

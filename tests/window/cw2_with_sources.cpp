@@ -7,7 +7,7 @@
 #include <exception>
 
 #include "cw2/interactive.h"
-#include "cw2/options.h"
+#include "cw2/options/options.h"
 
 int main(int argc, char** argv) {
     try {

@@ -1,0 +1,66 @@
+#include "cw2-bake/base/text_lines.h"
+
+#include <algorithm>
+
+namespace bake {
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+std::string_view take_word(std::string_view& text) {
+    text = trimmed(text);
+    const auto end = std::find_if(text.begin(), text.end(), is_blank);
+    const std::string_view word = text.substr(0, static_cast<std::size_t>(end - text.begin()));
+    text = trimmed(text.substr(word.size()));
+    return word;
+}
+
+std::string_view without_bom(std::string_view text) {
+    return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
+std::size_t line_end(std::string_view text, std::size_t offset) {
+    while (offset < text.size() && !is_line_end(text[offset])) ++offset;
+    if (offset == text.size()) return offset;
+    const bool crlf = text.substr(offset, 2) == "\r\n";
+    return offset + (crlf ? 2 : 1);
+}
+
+std::string take_statement(std::string_view text, std::size_t& offset) {
+    std::string statement;
+    for (;;) {
+        const std::size_t next = line_end(text, offset);
+        std::string_view line = text.substr(offset, next - offset);
+        while (!line.empty() && is_line_end(line.back())) line.remove_suffix(1);
+        offset = next;
+        const bool comment = statement.empty() && trimmed(line).starts_with('#');
+        if (!line.ends_with('\\') || comment) return statement.append(line);
+        line.remove_suffix(1);
+        statement.append(line).append(1, ' ');
+        if (offset == text.size()) return statement;
+    }
+}
+
+std::size_t line_number(std::string_view text, std::size_t offset) {
+    std::size_t number = 1;
+    for (std::size_t i = 0; i < std::min(offset, text.size()); ++i) {
+        const bool first_of_crlf = text.substr(i, 2) == "\r\n";
+        if (is_line_end(text[i]) && !first_of_crlf) ++number;
+    }
+    return number;
+}
+
+std::string in_quotes(std::string_view text) {
+    constexpr std::size_t kLongest = 60;
+    std::string shown = "'";
+    for (const char c : text.substr(0, kLongest)) {
+        const auto byte = static_cast<unsigned char>(c);
+        shown += byte < 0x20 || byte == 0x7F ? '?' : c;
+    }
+    return shown + (text.size() > kLongest ? "...'" : "'");
+}
+
+}  // namespace bake

@@ -1,0 +1,110 @@
+// How the corners of triangles hang together at their vertices, for the tangent generator.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cw2-bake/base/raw_vector.h"
+#include "cw2-bake/base/source_scene.h"
+
+namespace bake {
+
+inline constexpr std::uint32_t kNoSlot = 0xFFFF'FFFF;
+inline constexpr std::uint32_t kFewSlots = 8;
+
+/// The corners at each position of a welded scene: those of position p, ascending, are
+/// corner[first[p]] .. corner[first[p + 1]].
+struct CornerLists {
+    RawVector<std::uint32_t> first;
+    RawVector<std::uint32_t> corner;
+
+    std::span<const std::uint32_t> at(std::uint32_t position) const {
+        return std::span(corner).subspan(first[position], first[position + 1] - first[position]);
+    }
+};
+
+CornerLists list_corners(const SourceScene& scene);
+
+/// A corner, and what its face has to do with others there.
+struct Slot {
+    Corner own;
+    Corner next;  ///< the face's
+    Corner previous;
+    std::uint32_t material;
+    std::uint32_t face;
+    std::uint32_t corner;  ///< 3 face + 0, 1 or 2
+
+    /// Two corners of the face are at one position.
+    bool degenerate() const {
+        // Not ||: no processor foresees such faces.
+        return (own.position == next.position) | (own.position == previous.position) |
+               (next.position == previous.position);
+    }
+};
+
+/// The corners of some vertices: those of vertex v are the slots first .. end. Degenerate faces
+/// take no part: theirs come last.
+struct VertexSlots {
+    std::uint32_t first;  ///< corners of other faces, ascending
+    std::uint32_t degenerate;
+    std::uint32_t end;
+};
+
+struct CornerSlots {
+    std::vector<VertexSlots> vertices;
+    RawVector<Slot> slots;
+    /// Low halves of each slot's next (previous) position; kFewSlots more than there are slots.
+    RawVector<std::uint16_t> leaving;
+    RawVector<std::uint16_t> arriving;
+
+    /// Takes the vertices at some positions instead of those it has.
+    void assign(const SourceScene& scene, const CornerLists& lists,
+                std::span<const std::uint32_t> positions);
+
+ private:
+    void add(const SourceScene& scene, std::span<const std::uint32_t> corners, std::uint32_t first);
+    void sort(std::uint32_t first, std::uint32_t end);
+};
+
+/// Which slots at a vertex are neighbours: faces that share an edge there, one leaving along it and
+/// one arriving.
+class SlotLinks {
+ public:
+    explicit SlotLinks(const CornerSlots& slots) : slots_(slots) {}
+
+    /// Where more than two faces share an edge, the k-th that leaves along it (in face order) and
+    /// the k-th that arrives along it are neighbours.
+    void link(const VertexSlots& vertex);
+
+    /// Walks from `start`, of a vertex that is linked, across the edges at the vertex, both ways
+    /// round, and calls visit(slot) for each slot; a false answer ends the way. As each slot has
+    /// one neighbour either way, this reaches all that hangs together with `start`.
+    template <typename Visit>
+    void walk_around(std::uint32_t start, Visit&& visit) const {
+        for (std::uint32_t slot = across_leaving_[start]; slot != kNoSlot && visit(slot);)
+            slot = across_leaving_[slot];
+        for (std::uint32_t slot = across_arriving_[start]; slot != kNoSlot && visit(slot);)
+            slot = across_arriving_[slot];
+    }
+
+ private:
+    struct Edge {
+        Corner end;  ///< the other one
+        std::uint32_t slot;
+    };
+
+    const CornerSlots& slots_;
+    // Across the edge that leaves (arrives at) the slot's corner: the slot, at the same vertex, of
+    // the face on the other side, or kNoSlot.
+    std::vector<std::uint32_t> across_leaving_;
+    std::vector<std::uint32_t> across_arriving_;
+    std::vector<Edge> leaving_;
+    std::vector<Edge> arriving_;
+};
+
+/// Whether `count` faces, at most kFewSlots, at a vertex all hang together, and no edge has more
+/// than two of them. May answer false where they do.
+bool hang_together(const CornerSlots& slots, std::uint32_t first, std::uint32_t count);
+
+}  // namespace bake

@@ -1,0 +1,33 @@
+// Which way UVs wind on faces whose UVs cannot tell, for the tangent generator.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cw2-bake/base/source_scene.h"
+#include "cw2-bake/geometry/tangent_directions.h"
+#include "cw2-bake/geometry/tangent_topology.h"
+
+namespace bake {
+
+/// Faces without usable UVs have the winding of the group that reaches them first, with whichever
+/// corner; groups grow one after the other, in the order of their first corner.
+class Windings {
+ public:
+    Windings(const SourceScene& scene, const CornerLists& lists);
+
+    /// Whether the UVs of such a face wind as its positions do; `otherwise` where no group reaches
+    /// it.
+    bool preserving(std::uint32_t face, bool otherwise) const;
+
+ private:
+    void grow_groups(const CornerSlots& slots, const SlotLinks& links, const Spokes& spokes);
+    /// Where the face is in unusable_, or its end.
+    std::size_t find(std::uint32_t face) const;
+
+    std::vector<std::uint32_t> unusable_;  // faces, ascending
+    std::vector<signed char> preserving_;  // of each: 1, 0, or -1 if none has reached it
+};
+
+}  // namespace bake

@@ -1,0 +1,282 @@
+#include "cw2-bake/gltf/file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+#include "cw2-bake/base/text_lines.h"
+#include "cw2-bake/gltf/json.h"
+
+namespace bake {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+using nlohmann::json;
+
+/// The chunks of a .glb, or a .gltf as it is. The spans point into the file.
+struct GltfChunks {
+    std::string_view json;
+    Bytes binary;  ///< of a .glb; empty if it has none
+};
+
+std::uint32_t word(Bytes bytes, std::size_t offset) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    return value;
+}
+
+/// Tells the two apart by their first bytes. Throws BakeError for a .glb that is cut short or
+/// whose chunks do not fit into it.
+GltfChunks split_gltf(Bytes file, const std::filesystem::path& path) {
+    const auto fail = [&](const std::string& what) -> void {
+        throw BakeError(path.string() + ": " + what);
+    };
+    const auto text = [](Bytes bytes) {
+        return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    if (!text(file).starts_with("glTF")) return {without_bom(text(file)), {}};
+    constexpr std::uint32_t kJson = 0x4E4F'534A;
+    constexpr std::uint32_t kBinary = 0x004E'4942;
+    constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+    if (file.size() < kHeaderBytes) fail("is truncated: the header is incomplete");
+    if (word(file, 4) != 2) fail(fmt::format("is glTF binary {}, not 2", word(file, 4)));
+    if (word(file, 8) > file.size())
+        fail(fmt::format("is truncated: {} of {} bytes", file.size(), word(file, 8)));
+    Bytes rest = file.first(word(file, 8));
+    if (rest.size() < kHeaderBytes) fail("says that it is shorter than its header");
+    rest = rest.subspan(kHeaderBytes);
+
+    GltfChunks chunks;
+    for (int number = 0; !rest.empty(); ++number) {
+        if (rest.size() < kChunkHeaderBytes || word(rest, 0) > rest.size() - kChunkHeaderBytes) {
+            fail(fmt::format("chunk {} reaches past the end", number));
+        }
+        const Bytes contents = rest.subspan(kChunkHeaderBytes, word(rest, 0));
+        if ((number == 0) != (word(rest, 4) == kJson)) fail("its first chunk alone must be JSON");
+        if (number == 0) chunks.json = text(contents);
+        if (number == 1 && word(rest, 4) == kBinary) chunks.binary = contents;
+        rest = rest.subspan(kChunkHeaderBytes + contents.size());
+    }
+    return chunks;
+}
+
+/// The value of a digit of base 64, or of base 16; -1 if it is none.
+int base64_digit(char c) {
+    if (c >= 'A' && c <= 'Z') return c - 'A';
+    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+    if (c >= '0' && c <= '9') return c - '0' + 52;
+    return c == '+' ? 62 : c == '/' ? 63 : -1;
+}
+int hexadecimal_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+}
+
+std::optional<std::vector<std::byte>> decode_base64(std::string_view text) {
+    while (text.ends_with('=')) text.remove_suffix(1);
+    std::vector<std::byte> bytes;
+    bytes.reserve(text.size() / 4 * 3 + 2);
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char c : text) {
+        const int digit = base64_digit(c);
+        if (digit < 0) return std::nullopt;
+        bits = bits << 6 | static_cast<std::uint32_t>(digit);
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        bytes.push_back(static_cast<std::byte>(bits >> count & 0xFF));
+    }
+    return bytes;
+}
+
+/// RFC 3986: %XX is a byte, all else stands for itself.
+std::optional<std::string> decode_percent(std::string_view text) {
+    std::string decoded;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != '%') {
+            decoded += text[i];
+            continue;
+        }
+        const int high = i + 2 < text.size() ? hexadecimal_digit(text[i + 1]) : -1;
+        const int low = i + 2 < text.size() ? hexadecimal_digit(text[i + 2]) : -1;
+        if (high < 0 || low < 0 || high + low == 0) return std::nullopt;
+        decoded += static_cast<char>(high * 16 + low);
+        i += 2;
+    }
+    return decoded;
+}
+
+bool is_data(std::string_view uri) {
+    return uri.starts_with("data:");
+}
+
+/// Throws what is wrong with it as BakeError.
+std::vector<std::byte> decode_data(std::string_view uri) {
+    const std::size_t comma = uri.find(',');
+    if (comma == uri.npos || !uri.substr(0, comma).ends_with(";base64"))
+        throw BakeError("is a data URI, but not in base 64");
+    auto bytes = decode_base64(uri.substr(comma + 1));
+    if (!bytes) throw BakeError("is a data URI with malformed base 64");
+    return std::move(*bytes);
+}
+
+/// Throws what is wrong with it as BakeError.
+std::filesystem::path resolve(const std::filesystem::path& gltf, std::string_view uri) {
+    const std::size_t colon = uri.find(':');
+    const bool has_scheme = colon != uri.npos && uri.find('/') > colon;
+    const auto decoded = decode_percent(uri);
+    if (has_scheme || !decoded || decoded->empty() || decoded->starts_with('/') ||
+        decoded->find('\0') != decoded->npos) {
+        throw BakeError(fmt::format("{} is no relative path", in_quotes(uri)));
+    }
+    return gltf.parent_path() / *decoded;
+}
+
+class Loader {
+ public:
+    Loader(GltfFile& file, json& root, Bytes binary) : file_(file), root_(root), binary_(binary) {}
+
+    void load_buffers() {
+        for (std::size_t i = 0; i < array("buffers").size(); ++i) {
+            const std::string pointer = fmt::format("/buffers/{}", i);
+            const json& buffer = array("buffers")[i];
+            const auto length = buffer["byteLength"].get<std::size_t>();
+            try {
+                const Bytes bytes = buffer_bytes(buffer, i);
+                if (bytes.size() < length) {
+                    throw BakeError(fmt::format("holds {} bytes of {}", bytes.size(), length));
+                }
+                file_.buffers.push_back(bytes.first(length));
+            } catch (const BakeError& error) {
+                fail_at(file_.path, pointer, error.what());
+            } catch (const common::FileError& error) {
+                fail_at(file_.path, pointer, error.what());
+            }
+        }
+    }
+
+    void find_images() {
+        for (std::size_t i = 0; i < array("images").size(); ++i) {
+            GltfImage& image = file_.images.emplace_back();
+            try {
+                find_image(array("images")[i], i, image);
+            } catch (const BakeError& error) {
+                image.file = unique_name(array("images")[i], i);
+                image.problem = error.what();
+            }
+        }
+    }
+
+    /// What the bake has no use for.
+    void remove_what_is_left_out() {
+        const auto leave_out = [&](const char* what) {
+            if (!file_.left_out.empty()) file_.left_out += ", ";
+            file_.left_out += what;
+        };
+        for (const char* name : {"skins", "animations"})
+            if (root_.erase(name) > 0) leave_out(name);
+        bool morphs = false;
+        for (json& mesh : array("meshes")) {
+            mesh.erase("weights");
+            for (json& primitive : mesh["primitives"]) morphs |= primitive.erase("targets") > 0;
+        }
+        if (morphs) leave_out("morph targets");
+        root_.erase("buffers");
+        root_.erase("images");
+    }
+
+ private:
+    json& array(const char* name) {
+        static json none = json::array();
+        const auto found = root_.find(name);
+        return found == root_.end() ? none : *found;
+    }
+
+    Bytes buffer_bytes(const json& buffer, std::size_t index) {
+        const auto uri = buffer.find("uri");
+        if (uri == buffer.end()) {
+            if (index > 0 || binary_.empty()) throw BakeError("has no contents");
+            return binary_;
+        }
+        const auto& text = uri->get_ref<const std::string&>();
+        if (is_data(text)) return file_.decoded.emplace_back(decode_data(text));
+        const std::filesystem::path path = resolve(file_.path, text);
+        const Bytes bytes = file_.mapped.emplace_back(path).bytes();
+        file_.buffer_files.push_back(path);
+        return bytes;
+    }
+
+    std::filesystem::path unique_name(const json& image, std::size_t index) const {
+        std::string name = image.value("name", "");
+        if (name.empty()) name = fmt::format("image{}", index);
+        std::ranges::replace(name, '/', '_');
+        return file_.path / "images" / std::to_string(index) / name;
+    }
+
+    void find_image(const json& image, std::size_t index, GltfImage& found) {
+        const auto uri = image.find("uri");
+        const auto view = image.find("bufferView");
+        if ((uri == image.end()) == (view == image.end()))
+            throw BakeError("needs either a uri or a bufferView");
+        if (view != image.end()) {
+            const Bytes bytes = view_bytes(array("bufferViews")[view->get<std::size_t>()]);
+            found.embedded = std::make_shared<std::vector<std::byte>>(bytes.begin(), bytes.end());
+        } else if (is_data(uri->get_ref<const std::string&>())) {
+            found.embedded = std::make_shared<std::vector<std::byte>>(
+                decode_data(uri->get_ref<const std::string&>()));
+        } else {
+            found.file = resolve(file_.path, uri->get_ref<const std::string&>());
+            return;
+        }
+        found.file = unique_name(image, index);
+    }
+
+    Bytes view_bytes(const json& view) const {
+        const Bytes buffer = file_.buffers[view["buffer"].get<std::size_t>()];
+        const auto offset = view.value("byteOffset", std::size_t{0});
+        const auto length = view["byteLength"].get<std::size_t>();
+        if (offset > buffer.size() || length > buffer.size() - offset)
+            throw BakeError("its buffer view reaches past its buffer");
+        return buffer.subspan(offset, length);
+    }
+
+    GltfFile& file_;
+    json& root_;
+    Bytes binary_;
+};
+
+}  // namespace
+
+GltfFile load_gltf(const std::filesystem::path& path) {
+    GltfFile file;
+    file.path = path;
+    Bytes bytes;
+    try {
+        bytes = file.mapped.emplace_back(path).bytes();
+    } catch (const common::FileError& error) {
+        throw BakeError(error.what());
+    }
+    const GltfChunks chunks = split_gltf(bytes, path);
+    json root = parse_gltf_json(chunks.json, path);
+    Loader loader(file, root, chunks.binary);
+    loader.load_buffers();
+    loader.find_images();
+    loader.remove_what_is_left_out();
+
+    const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
+    std::string error, warning;
+    tinygltf::TinyGLTF parser;
+    if (!parser.LoadASCIIFromString(&file.model, &error, &warning, text.data(),
+                                    static_cast<unsigned>(text.size()), "", tinygltf::NO_REQUIRE)) {
+        std::ranges::replace(error, '\n', ' ');
+        throw BakeError(fmt::format("{}: {}", path.string(), trimmed(error)));
+    }
+    return file;
+}
+
+}  // namespace bake

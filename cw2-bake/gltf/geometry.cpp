@@ -1,0 +1,177 @@
+#include "cw2-bake/gltf/geometry.h"
+
+#include <algorithm>
+#include <cstring>
+#include <glm/common.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+
+#include "mesh-format/tangent_frame.h"
+
+namespace bake {
+namespace {
+
+using mesh_format::Document;
+using mesh_format::MeshRecord;
+using mesh_format::PositionForm;
+using mesh_format::UvForm;
+using nlohmann::ordered_json;
+
+enum : int { kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125 };
+enum : int { kArrayBuffer = 34962, kElementArrayBuffer = 34963 };
+
+struct Vertices {
+    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec4> tangents;
+    std::vector<glm::vec2> uvs;
+};
+
+/// A vector as the vertices hold it: floats, or words q that stand for origin + step * q.
+template <int N>
+glm::vec<N, float> vector_of(const std::byte* bytes, bool words, const glm::vec<N, float>& origin,
+                             const glm::vec<N, float>& step) {
+    if (!words) {
+        glm::vec<N, float> vector;
+        std::memcpy(&vector, bytes, sizeof vector);
+        return vector;
+    }
+    glm::vec<N, std::uint16_t> q;
+    std::memcpy(&q, bytes, sizeof q);
+    return origin + step * glm::vec<N, float>(q);
+}
+
+Vertices vertices_of(const Document& document, const MeshRecord& mesh) {
+    const mesh_format::VertexLayout layout =
+        mesh_format::vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+    // Exact: the step is a power of two, and origins and words fit a float's 24 bits.
+    const glm::vec3 step(document.scene.position_step);
+    const glm::vec3 origin = step * glm::vec3(glm::make_vec3(mesh.origin));
+    Vertices vertices;
+    for (std::uint32_t i = 0; i < mesh.vertex_count; ++i) {
+        const std::byte* vertex =
+            document.vertices.data() + mesh.vertex_offset + std::size_t{i} * layout.stride;
+        const mesh_format::TangentFrame frame =
+            mesh_format::unpack_frame(mesh.frame_form, vertex + layout.frame_offset);
+        vertices.positions.push_back(
+            vector_of<3>(vertex, mesh.position_form == PositionForm::quantised, origin, step));
+        vertices.normals.emplace_back(frame.normal[0], frame.normal[1], frame.normal[2]);
+        vertices.tangents.emplace_back(frame.tangent[0], frame.tangent[1], frame.tangent[2],
+                                       frame.handedness);
+        vertices.uvs.push_back(
+            vector_of<2>(vertex + layout.uv_offset, mesh.uv_form == UvForm::quantised,
+                         glm::make_vec2(mesh.uv_origin), glm::make_vec2(mesh.uv_step)));
+    }
+    return vertices;
+}
+
+/// One view after the other grows with the meshes; they are joined at the end.
+class View {
+ public:
+    View(int target, int stride) : target_(target), stride_(stride) {}
+
+    /// Returns the offset of what was added.
+    template <typename T>
+    std::size_t add(const std::vector<T>& values) {
+        const std::size_t offset = bytes_.size();
+        const auto bytes = std::as_bytes(std::span(values));
+        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+        bytes_.resize((bytes_.size() + 3) / 4 * 4);
+        return offset;
+    }
+
+    void finish(GltfGeometry& geometry) {
+        ordered_json view{
+            {"buffer", 0}, {"byteOffset", geometry.bytes.size()}, {"byteLength", bytes_.size()}};
+        if (stride_ > 0) view["byteStride"] = stride_;
+        view["target"] = target_;
+        geometry.views.push_back(std::move(view));
+        geometry.bytes.insert(geometry.bytes.end(), bytes_.begin(), bytes_.end());
+        bytes_ = {};
+    }
+
+ private:
+    int target_;
+    int stride_;  ///< bytes; 0: not stated
+    std::vector<std::byte> bytes_;
+};
+
+class Builder {
+ public:
+    explicit Builder(const Document& document) : document_(document) {
+        geometry_.low = glm::vec3(std::numeric_limits<float>::infinity());
+        geometry_.high = -geometry_.low;
+    }
+
+    GltfGeometry build() {
+        for (const MeshRecord& mesh : document_.meshes) add(mesh);
+        for (View& view : views_) view.finish(geometry_);
+        return std::move(geometry_);
+    }
+
+ private:
+    enum : std::size_t { kPositions, kNormals, kTangents, kUvs, kIndices };
+
+    void add(const MeshRecord& mesh) {
+        const Vertices vertices = vertices_of(document_, mesh);
+        ordered_json attributes;
+        attributes["POSITION"] = add(kPositions, vertices.positions, "VEC3", kFloat);
+        bound(vertices.positions);
+        attributes["NORMAL"] = add(kNormals, vertices.normals, "VEC3", kFloat);
+        attributes["TANGENT"] = add(kTangents, vertices.tangents, "VEC4", kFloat);
+        attributes["TEXCOORD_0"] = add(kUvs, vertices.uvs, "VEC2", kFloat);
+        const auto indices = document_.indices.subspan(mesh.first_index, mesh.index_count);
+        const bool fits = mesh.vertex_count <= 0xFFFF;  // index 65,535 would mean a restart
+        const std::size_t accessor =
+            fits ? add(kIndices, std::vector<std::uint16_t>(indices.begin(), indices.end()),
+                       "SCALAR", kUnsignedShort)
+                 : add(kIndices, std::vector<std::uint32_t>(indices.begin(), indices.end()),
+                       "SCALAR", kUnsignedInt);
+        geometry_.primitives.push_back({{"attributes", std::move(attributes)},
+                                        {"indices", accessor},
+                                        {"material", mesh.material}});
+    }
+
+    /// Returns the accessor's index.
+    template <typename T>
+    std::size_t add(std::size_t view, const std::vector<T>& values, const char* type,
+                    int component_type) {
+        geometry_.accessors.push_back({{"bufferView", view},
+                                       {"byteOffset", views_[view].add(values)},
+                                       {"componentType", component_type},
+                                       {"count", values.size()},
+                                       {"type", type}});
+        return geometry_.accessors.size() - 1;
+    }
+
+    /// The accessor added last is asked to state its bounds.
+    void bound(const std::vector<glm::vec3>& positions) {
+        glm::vec3 low = positions.front();
+        glm::vec3 high = low;
+        for (const glm::vec3& position : positions) {
+            low = glm::min(low, position);
+            high = glm::max(high, position);
+        }
+        geometry_.accessors.back()["min"] = {low.x, low.y, low.z};
+        geometry_.accessors.back()["max"] = {high.x, high.y, high.z};
+        geometry_.low = glm::min(geometry_.low, low);
+        geometry_.high = glm::max(geometry_.high, high);
+    }
+
+    const Document& document_;
+    GltfGeometry geometry_;
+    View views_[5] = {{kArrayBuffer, 12},
+                      {kArrayBuffer, 12},
+                      {kArrayBuffer, 16},
+                      {kArrayBuffer, 8},
+                      {kElementArrayBuffer, 0}};
+};
+
+}  // namespace
+
+GltfGeometry make_gltf_geometry(const Document& document) {
+    return Builder(document).build();
+}
+
+}  // namespace bake

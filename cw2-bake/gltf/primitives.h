@@ -1,0 +1,70 @@
+// The triangles of glTF's primitives, collected into a scene.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cw2-bake/base/source_scene.h"
+#include "cw2-bake/gltf/accessors.h"
+#include "cw2-bake/gltf/materials.h"
+
+namespace bake {
+
+/// A primitive mode's triangles over `indices`, in the order and winding that the glTF
+/// specification gives them (section 3.7.2.1); those with two equal indices are left out.
+std::vector<std::array<std::uint32_t, 3>> triangles_of(int mode,
+                                                       std::span<const std::uint32_t> indices);
+
+class GltfPrimitives {
+ public:
+    /// All must outlive this.
+    GltfPrimitives(const GltfFile& file, const Warn& warn, SourceScene& scene);
+
+    /// To be called for each mesh that will be added, before any is and in their order: throws
+    /// BakeError where they are so many that a small file would claim all memory, or all day.
+    void expect_mesh(int mesh);
+
+    /// Adds the mesh's triangles, transformed. Throws BakeError.
+    void add_mesh(int mesh, const glm::dmat4& world_from_mesh);
+
+    /// Of what was left out, once for the file.
+    void warn_of_left_out() const;
+
+ private:
+    struct Place;
+    struct Arrays;
+    struct Material {
+        GltfMaterial of;
+        std::uint32_t index;  ///< in the scene
+    };
+    const Material& material(int index);
+    Arrays read_arrays(const tinygltf::Primitive& primitive, const Material& material,
+                       const std::string& place);
+    void add_primitive(const tinygltf::Primitive& primitive, const std::string& place,
+                       const glm::dmat4& world_from_mesh);
+
+    const GltfFile& file_;
+    const Warn& warn_;
+    SourceScene& scene_;
+    GltfAccessors accessors_;
+    GltfMaterials converter_;
+    std::map<int, Material> materials_;  ///< by index in the glTF
+    std::vector<std::uint32_t>
+        new_index_;  ///< of the vertices of the primitive at hand; else kUnused
+    std::size_t corners_ = 0;
+    std::set<int> read_;  ///< accessors of positions
+    int read_last_ = -1;
+    std::size_t read_again_ = 0;  ///< positions, because others were read in between
+    std::size_t most_corners_;
+    std::size_t points_or_lines_ = 0;
+    bool colors_ = false;
+    bool some_without_normals_ = false;
+};
+
+}  // namespace bake

@@ -1,0 +1,104 @@
+// What a piece of OBJ text states, as arrays that can be strung together.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cw2-bake/base/raw_vector.h"
+#include "cw2-bake/base/source_scene.h"
+
+namespace bake {
+
+/// The indices of a face's corner, in the order in which a corner states them.
+enum ObjAttribute { kObjPosition, kObjUv, kObjNormal };
+using ObjCounts = std::array<std::uint32_t, 3>;  ///< by ObjAttribute
+
+/// While a piece is parsed with no knowledge of the rest, indices are checked only against these.
+inline constexpr std::uint32_t kMaxObjElements = 0x7FFF'FFFF;
+inline constexpr std::uint32_t kMaxObjDistance = 0x2000'0000;
+
+/// What indices may refer to: the elements in the text before this piece, and in the whole file.
+struct ObjIndexBounds {
+    ObjCounts before{kMaxObjDistance, kMaxObjDistance, kMaxObjDistance};
+    ObjCounts total{kMaxObjElements, kMaxObjElements, kMaxObjElements};
+};
+
+/// An index of a corner that counts back from the elements stated so far is held as
+/// kObjRelative + kObjRelativeBias + its place from the start of the piece's own elements.
+inline constexpr std::uint32_t kObjRelative = 0x8000'0000;
+inline constexpr std::uint32_t kObjRelativeBias = 0x4000'0000;
+
+/// A face of more than three corners: `corner_count - 2` triangles, a fan about its first corner.
+struct ObjPolygon {
+    std::uint32_t first_triangle;
+    std::uint32_t corner_count;
+};
+
+/// From `first_triangle` on, this material is in use (empty: none).
+struct ObjMaterialUse {
+    std::uint32_t first_triangle;
+    std::string name;
+    std::size_t offset;  ///< of the statement in the text
+};
+
+/// From `first_triangle` on, this smoothing group is in use.
+struct ObjSmoothingUse {
+    std::uint32_t first_triangle;
+    std::uint32_t group;
+};
+
+/// A statement kept as text: `words` is what follows its keyword.
+struct ObjStatement {
+    std::size_t offset;
+    std::string words;
+};
+
+struct ObjError {
+    std::size_t offset;  ///< of the statement
+    std::string what;
+};
+
+using ObjTriangle = std::array<Corner, 3>;
+
+/// Where ObjChunk::text_bytes counts faces; attributes are counted by ObjAttribute.
+inline constexpr std::size_t kObjFaceText = 3;
+
+struct ObjChunk {
+    /// Scaled to length 1, if it has one.
+    void add_normal(const glm::vec3& v) {
+        const double x = v.x, y = v.y, z = v.z;
+        const double length = std::sqrt(x * x + y * y + z * z);
+        lacks_normals |= length == 0;
+        normals.push_back(length > 0 ? glm::vec3(x / length, y / length, z / length) + 0.0f : v);
+    }
+
+    std::vector<glm::vec3> positions;
+    std::vector<glm::vec2> uvs;
+    std::vector<glm::vec3> normals;  ///< of length 1, or 0
+    /// Indices are from 0 or relative, see kObjRelative.
+    RawVector<ObjTriangle> triangles;
+    std::vector<ObjPolygon> polygons;
+    std::vector<ObjMaterialUse> material_uses;
+    std::vector<ObjSmoothingUse> smoothing_uses;
+    std::vector<ObjStatement> libraries;
+    std::vector<ObjStatement> unsupported;    ///< `words` is the keyword
+    std::vector<std::size_t> short_faces;     ///< offsets of faces with fewer than three corners
+    ObjCounts max_index{};                    ///< the largest that is not relative, from 1
+    std::array<std::size_t, 4> text_bytes{};  ///< of v, vt, vn and f lines; see kObjFaceText
+    bool has_relative = false;
+    bool lacks_normals = false;     ///< some corner states no normal, or some normal is 0
+    std::optional<ObjError> error;  ///< the first one; nothing after it is read
+
+    /// Empties everything and keeps the memory.
+    void clear();
+};
+
+}  // namespace bake

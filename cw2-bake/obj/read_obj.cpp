@@ -1,0 +1,217 @@
+#include "cw2-bake/obj/read_obj.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <string_view>
+#include <system_error>
+#include <unordered_map>
+
+#include "common/io.h"
+#include "cw2-bake/base/text_lines.h"
+#include "cw2-bake/obj/assembly.h"
+#include "cw2-bake/obj/read_mtl.h"
+#include "cw2-bake/obj/triangulate.h"
+
+namespace bake {
+namespace {
+
+common::MappedFile map_file(const std::filesystem::path& path) {
+    try {
+        return common::MappedFile(path);
+    } catch (const common::FileError& error) {
+        throw BakeError(error.what());
+    }
+}
+
+/// The fans of all polygons become proper triangulations.
+void triangulate_polygons(const std::vector<ObjPolygon>& polygons, SourceScene& scene) {
+    struct Scratch {
+        Triangulator triangulator;
+        std::vector<Corner> corners;
+        std::vector<glm::vec3> positions;
+    };
+    tbb::enumerable_thread_specific<Scratch> scratches;
+    const auto triangulate = [&](const ObjPolygon& polygon) {
+        Scratch& scratch = scratches.local();
+        Corner* fan = scene.corners.data() + std::size_t{polygon.first_triangle} * 3;
+        scratch.corners.assign(fan, fan + 2);
+        for (std::uint32_t i = 0; i < polygon.corner_count - 2; ++i) {
+            scratch.corners.push_back(fan[3 * i + 2]);
+        }
+        scratch.positions.clear();
+        for (const Corner& corner : scratch.corners) {
+            scratch.positions.push_back(scene.positions[corner.position]);
+        }
+        for (const auto& triangle : scratch.triangulator.triangulate(scratch.positions)) {
+            for (const std::uint32_t i : triangle) *fan++ = scratch.corners[i];
+        }
+    };
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, polygons.size()), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) triangulate(polygons[i]);
+    });
+}
+
+/// Forgets normals of no length, and says which triangles are smoothed if some corner now has none.
+void prepare_missing_normals(const std::vector<ObjSmoothingUse>& uses, SourceScene& scene) {
+    bool complete = true;
+    for (Corner& corner : scene.corners) {
+        if (corner.normal != kAbsent && scene.normals[corner.normal] == glm::vec3{0.0f}) {
+            corner.normal = kAbsent;
+        }
+        complete &= corner.normal != kAbsent;
+    }
+    if (complete) return;
+    scene.smoothing_group.resize(scene.triangle_material.size(), 0);
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+        const std::size_t end =
+            i + 1 < uses.size() ? uses[i + 1].first_triangle : scene.smoothing_group.size();
+        std::fill(scene.smoothing_group.begin() + uses[i].first_triangle,
+                  scene.smoothing_group.begin() + static_cast<std::ptrdiff_t>(end), uses[i].group);
+    }
+}
+
+/// The MTL files of an OBJ, and what of them its materials name.
+class Libraries {
+ public:
+    /// Adds the files that it reads to `files`.
+    Libraries(const std::filesystem::path& obj, std::string_view text, const Warn& warn,
+              std::vector<std::filesystem::path>& files)
+        : obj_(obj), text_(text), warn_(warn), files_(files) {}
+
+    void read(const std::vector<ObjStatement>& statements, std::vector<SourceMaterial>& materials);
+    void warn_of_unknown(const std::vector<SourceMaterial>& materials,
+                         const std::vector<std::size_t>& offsets) const;
+
+ private:
+    std::vector<std::string> names(const ObjStatement& statement) const;
+    std::filesystem::path resolve(std::string_view name) const;
+    void read_library(const std::string& name, const std::string& place,
+                      std::vector<SourceMaterial>& materials);
+    std::string place(std::size_t offset) const {
+        return fmt::format("{}:{}", obj_.string(), line_number(text_, offset));
+    }
+
+    const std::filesystem::path& obj_;
+    std::string_view text_;
+    const Warn& warn_;
+    std::vector<std::filesystem::path>& files_;
+    std::unordered_map<std::string_view, std::size_t> unknown_;  // by name, index of material
+    bool some_missing_ = false;
+};
+
+std::filesystem::path Libraries::resolve(std::string_view name) const {
+    std::string portable(name);
+    std::replace(portable.begin(), portable.end(), '\\', '/');
+    return obj_.parent_path() / portable;
+}
+
+/// The files a statement names: one, with blanks in its name, if that exists, or several.
+std::vector<std::string> Libraries::names(const ObjStatement& statement) const {
+    const auto exists = [&](std::string_view name) {
+        std::error_code ignored;
+        return std::filesystem::exists(resolve(name), ignored);
+    };
+    std::vector<std::string> words;
+    std::string_view rest = statement.words;
+    while (!rest.empty()) words.emplace_back(take_word(rest));
+    const bool whole = exists(statement.words) || std::none_of(words.begin(), words.end(), exists);
+    return whole ? std::vector<std::string>{statement.words} : words;
+}
+
+void Libraries::read_library(const std::string& name, const std::string& stated_in,
+                             std::vector<SourceMaterial>& materials) {
+    const std::filesystem::path path = resolve(name);
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) {
+        some_missing_ = true;
+        warn_(fmt::format("{}: no material library {}", stated_in, in_quotes(name)));
+        return;
+    }
+    const auto wanted = [&](std::string_view material) { return unknown_.contains(material); };
+    files_.push_back(path);
+    try {
+        for (SourceMaterial& material : read_mtl(path, wanted, warn_)) {
+            const auto entry = unknown_.find(material.name);
+            SourceMaterial& named = materials[entry->second];
+            unknown_.erase(entry);
+            named = std::move(material);
+        }
+    } catch (const common::FileError& error) {
+        some_missing_ = true;
+        warn_(fmt::format("{}: {}", stated_in, error.what()));
+    }
+}
+
+void Libraries::read(const std::vector<ObjStatement>& statements,
+                     std::vector<SourceMaterial>& materials) {
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        if (!materials[i].name.empty()) unknown_.emplace(materials[i].name, i);
+    }
+    std::vector<std::string> done;
+    for (const ObjStatement& statement : statements) {
+        for (const std::string& name : names(statement)) {
+            if (std::find(done.begin(), done.end(), name) != done.end()) continue;
+            done.push_back(name);
+            read_library(name, place(statement.offset), materials);
+        }
+    }
+}
+
+/// The warning of a missing library covers the materials that may be in it.
+void Libraries::warn_of_unknown(const std::vector<SourceMaterial>& materials,
+                                const std::vector<std::size_t>& offsets) const {
+    if (some_missing_) return;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        if (!unknown_.contains(materials[i].name)) continue;
+        warn_(fmt::format("{}: no material library defines {}; a default is used",
+                          place(offsets[i]), in_quotes(materials[i].name)));
+    }
+}
+
+void warn_of_left_out(const ObjContents& contents, std::string_view text, const std::string& name,
+                      const Warn& warn) {
+    for (const ObjStatement& statement : contents.unsupported) {
+        warn(fmt::format("{}:{}: '{}' is not supported and left out", name,
+                         line_number(text, statement.offset), statement.words));
+    }
+    if (!contents.short_faces.empty()) {
+        warn(fmt::format("{}:{}: a face of fewer than three corners is left out ({} in all)", name,
+                         line_number(text, contents.short_faces.front()),
+                         contents.short_faces.size()));
+    }
+}
+
+}  // namespace
+
+SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::size_t chunk_bytes) {
+    const common::MappedFile file = map_file(path);
+    const std::string name = path.string();
+    const std::string_view text =
+        without_bom({reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()});
+    constexpr std::size_t kProbeBytes = 4096;
+    if (text.substr(0, kProbeBytes).find('\0') != text.npos) {
+        throw BakeError(name + ": is no OBJ: it holds binary data");
+    }
+
+    ObjContents contents = parse_obj(text, name, chunk_bytes);
+    SourceScene& scene = contents.scene;
+    warn_of_left_out(contents, text, name, warn);
+    if (scene.corners.empty()) throw BakeError(name + ": has no faces");
+    triangulate_polygons(contents.polygons, scene);
+    if (contents.lacks_normals) prepare_missing_normals(contents.smoothing_uses, scene);
+
+    scene.files.push_back(path);
+    Libraries libraries(path, text, warn, scene.files);
+    libraries.read(contents.libraries, scene.materials);
+    libraries.warn_of_unknown(scene.materials, contents.material_offsets);
+    for (SourceMaterial& material : scene.materials) {
+        if (material.name.empty()) material.name = "default";
+    }
+    return std::move(scene);
+}
+
+}  // namespace bake

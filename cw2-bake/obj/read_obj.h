@@ -1,0 +1,21 @@
+// Wavefront OBJ and MTL to a SourceScene.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "cw2-bake/base/diagnostics.h"
+#include "cw2-bake/base/source_scene.h"
+
+namespace bake {
+
+/// Reads an OBJ and the MTLs it names. Throws BakeError, with the line, for what cannot be read:
+/// no such file, no faces, an index out of range, a number that is not finite, a malformed
+/// statement. A missing MTL or material is a warning, and what cannot be drawn (curves, faces of
+/// fewer than three corners) is left out with one. Faces before any `usemtl` get a material
+/// "default". The text is parsed in pieces of about `chunk_bytes`, on as many threads as TBB is
+/// allowed; the result depends on neither.
+SourceScene read_obj(const std::filesystem::path& path, const Warn& warn,
+                     std::size_t chunk_bytes = 256 * 1024);
+
+}  // namespace bake

@@ -1,0 +1,73 @@
+#include "cw2-bake/textures/block_compression.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cw2-bake/textures/block_encoders.h"
+#include "cw2-bake/textures/mip_chain.h"
+
+namespace bake {
+namespace {
+
+using mesh_format::TextureFormat;
+
+constexpr float kLeastPsnr = 34.0f;
+constexpr float kLeastNormalPsnr = 38.0f;
+
+TextureFormat compressed(TextureFormat format) {
+    switch (format) {
+        case TextureFormat::r8_unorm:
+            return TextureFormat::bc4_unorm;
+        case TextureFormat::rgba8_unorm:
+            return TextureFormat::bc5_unorm;
+        default:
+            return TextureFormat::bc1_srgb;
+    }
+}
+
+/// The sum of the squared errors; see block_encoders.h.
+double compress_level(TextureFormat to, const PlainLevel& level, std::uint32_t limit,
+                      std::byte* out) {
+    const std::size_t row_bytes =
+        std::size_t{mesh_format::block_count(to, level.width)} * mesh_format::block_bytes(to);
+    double error = 0.0;
+    for (std::uint32_t top = 0; top < level.height; top += 4, out += row_bytes) {
+        error += to == TextureFormat::bc1_srgb    ? encode_bc1_row(level, top, out)
+                 : to == TextureFormat::bc4_unorm ? encode_bc4_row(level, top, limit, out)
+                                                  : encode_bc5_row(level, top, out);
+    }
+    return error;
+}
+
+/// dB, of `error` over all texels.
+float psnr_of(const Texture& texture, TextureFormat format, double error) {
+    const int channels = format == TextureFormat::bc4_unorm ? 1 : 3;
+    const double mean = error / (static_cast<double>(texture.width) * texture.height * channels);
+    return static_cast<float>(std::clamp(10.0 * std::log10(255.0 * 255.0 / std::max(mean, 1e-9)),
+                                         0.0, double{mesh_format::kExactPsnr}));
+}
+
+}  // namespace
+
+void compress_to_blocks(Texture& texture, std::optional<float> cutoff) {
+    if (texture.width == 1 && texture.height == 1) return;
+    const TextureFormat to = compressed(texture.format);
+    const std::uint32_t limit = cutoff ? cutoff_byte(*cutoff) : 0;
+    std::vector<std::byte> blocks(mesh_format::mip_chain_bytes(to, texture.width, texture.height));
+    const std::byte* level = texture.payload.data();
+    std::byte* out = blocks.data();
+    for (std::uint32_t i = 0; i < mesh_format::full_mip_count(texture.width, texture.height); ++i) {
+        const std::uint32_t width = mesh_format::mip_extent(texture.width, i);
+        const std::uint32_t height = mesh_format::mip_extent(texture.height, i);
+        const double error = compress_level(to, {level, width, height}, limit, out);
+        level += mesh_format::mip_bytes(texture.format, texture.width, texture.height, i);
+        out += mesh_format::mip_bytes(to, texture.width, texture.height, i);
+        if (i > 0) continue;
+        texture.psnr = psnr_of(texture, to, error);
+        if (texture.psnr < (to == TextureFormat::bc5_unorm ? kLeastNormalPsnr : kLeastPsnr)) return;
+    }
+    texture.format = to;
+    texture.payload = std::move(blocks);
+}
+
+}  // namespace bake

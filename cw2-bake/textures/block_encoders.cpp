@@ -1,0 +1,479 @@
+#include "cw2-bake/textures/block_encoders.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "common/every_cpu.h"
+
+namespace bake {
+namespace {
+
+/// Blocks that are encoded at a time, one a lane.
+constexpr std::uint32_t kLanes = 8;
+using Floats [[gnu::vector_size(4 * kLanes)]] = float;
+using Ints [[gnu::vector_size(4 * kLanes)]] = std::int32_t;
+
+/// One value of each of the 16 texels of a block, row by row.
+struct Values {
+    Floats of[16];
+};
+
+CW2_INLINE Floats to_floats(Ints values) {
+    return __builtin_convertvector(values, Floats);
+}
+/// Towards zero.
+CW2_INLINE Ints to_ints(Floats values) {
+    return __builtin_convertvector(values, Ints);
+}
+CW2_INLINE Floats smaller(Floats a, Floats b) {
+    return a < b ? a : b;
+}
+CW2_INLINE Floats larger(Floats a, Floats b) {
+    return a > b ? a : b;
+}
+CW2_INLINE Floats all(float value) {
+    return value - Floats{};
+}
+
+/// Where a group of blocks lies in its level.
+struct Place {
+    PlainLevel level;
+    std::uint32_t left;  ///< texels
+    std::uint32_t top;
+
+    bool inside() const { return left + 4 * kLanes <= level.width && top + 4 <= level.height; }
+};
+
+/// The texels of a group; Word has the size of a texel.
+template <typename Word>
+CW2_INLINE void gather(const Place& place, Ints (&texels)[16]) {
+    alignas(32) std::int32_t words[16][kLanes];
+    for (std::uint32_t y = 0; y < 4; ++y) {
+        const std::uint32_t row = std::min(place.top + y, place.level.height - 1);
+        const std::byte* begin =
+            place.level.texels + std::size_t{row} * place.level.width * sizeof(Word);
+        Word line[4 * kLanes];
+        if (place.left + 4 * kLanes <= place.level.width) {
+            std::memcpy(line, begin + place.left * sizeof(Word), sizeof line);
+        } else {
+            for (std::uint32_t x = 0; x < 4 * kLanes; ++x) {
+                const std::size_t at = std::min(place.left + x, place.level.width - 1);
+                std::memcpy(&line[x], begin + at * sizeof(Word), sizeof(Word));
+            }
+        }
+        for (std::uint32_t x = 0; x < 4; ++x) {
+            for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+                words[4 * y + x][lane] = static_cast<std::int32_t>(line[4 * lane + x]);
+            }
+        }
+    }
+    std::memcpy(texels, words, sizeof words);
+}
+
+/// Channel `c` of texels of four bytes.
+CW2_INLINE void channel(const Ints (&texels)[16], int c, Values& values) {
+    for (int i = 0; i < 16; ++i) values.of[i] = to_floats(texels[i] >> 8 * c & 255);
+}
+
+/// Sums the errors of the texels that lie inside the level.
+CW2_INLINE double sum_inside(const Values& errors, const Place& place) {
+    double sum = 0.0;
+    if (place.inside()) {
+        Floats sums{};
+        for (int i = 0; i < 16; ++i) sums += errors.of[i];
+        for (std::uint32_t lane = 0; lane < kLanes; ++lane) sum += sums[lane];
+        return sum;
+    }
+    for (std::uint32_t i = 0; i < 16; ++i) {
+        for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+            if (place.left + 4 * lane + i % 4 < place.level.width &&
+                place.top + i / 4 < place.level.height) {
+                sum += errors.of[i][lane];
+            }
+        }
+    }
+    return sum;
+}
+
+/// Writes the group's blocks that lie inside the level, each of 8 bytes, `step` bytes apart.
+CW2_INLINE void store(const Place& place, Ints low, Ints high, std::byte* out, std::size_t step) {
+    const std::uint32_t count = std::min(kLanes, (place.level.width - place.left + 3) / 4);
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+        const std::uint64_t block = static_cast<std::uint32_t>(low[lane]) |
+                                    std::uint64_t{static_cast<std::uint32_t>(high[lane])} << 32;
+        std::memcpy(out + lane * step, &block, sizeof block);
+    }
+}
+
+// ---- BC4 ----
+
+/// Encodes one channel; `values` become what the blocks decode to.
+CW2_INLINE void encode_scalars(Values& values, std::int32_t limit, Ints& low, Ints& high) {
+    Floats least = values.of[0];
+    Floats most = values.of[0];
+    for (const Floats value : values.of) {
+        least = smaller(least, value);
+        most = larger(most, value);
+    }
+    const Ints range = to_ints(most - least);
+    const Floats scale = 7.0f / larger(most - least, all(1.0f));
+    const Ints crosses = (least < static_cast<float>(limit)) & (most >= static_cast<float>(limit));
+    Ints bits[2]{};
+    for (int i = 0; i < 16; ++i) {
+        // Steps down from the largest value, 0 to 7.
+        Ints steps = to_ints((most - values.of[i]) * scale + 0.5f);
+        // x * 9363 >> 16 is x / 7 for the x that come up.
+        const auto decode = [&] { return to_ints(most) - ((steps * range + 3) * 9363 >> 16); };
+        const Ints shown = values.of[i] >= static_cast<float>(limit);
+        const Ints strays = crosses & (shown ^ (decode() >= limit));
+        steps += strays & (shown ? Ints{} - 1 : Ints{} + 1);
+        values.of[i] = to_floats(decode());
+        // The ends come first, then what lies between them.
+        const Ints index = steps == 0 ? Ints{} : steps == 7 ? Ints{} + 1 : steps + 1;
+        bits[i / 8] |= index << 3 * (i % 8);
+    }
+    low = to_ints(most) | to_ints(least) << 8 | bits[0] << 16;
+    high = (bits[0] >> 16 & 255) | bits[1] << 8;
+}
+
+// ---- BC1 ----
+
+struct Colors {
+    Values channel[3];
+};
+
+/// Two colours for the ends of the palette, in 5, 6 and 5 bits.
+struct Ends {
+    Ints first[3];
+    Ints second[3];
+};
+constexpr std::array<int, 3> kBits{5, 6, 5};
+
+CW2_INLINE Ints quantise(Floats value, int c) {
+    const float largest = static_cast<float>((1 << kBits[c]) - 1);
+    return to_ints(smaller(larger(value, Floats{}), all(255.0f)) * (largest / 255.0f) + 0.5f);
+}
+CW2_INLINE Ints expand(Ints value, int c) {
+    return value << (8 - kBits[c]) | value >> (2 * kBits[c] - 8);
+}
+/// x * 21846 >> 16 is x / 3 for the x that come up.
+CW2_INLINE Ints third(Ints value) {
+    return value * 21846 >> 16;
+}
+
+/// A palette between two ends, and for each texel how many thirds of the way it lies.
+struct Candidate {
+    Ends ends;
+    Values steps;
+    Values errors;
+    Floats total;
+};
+
+CW2_INLINE void match(const Colors& colors, Candidate& candidate) {
+    Floats palette[3][4];
+    Floats square{};
+    for (int c = 0; c < 3; ++c) {
+        const Ints first = expand(candidate.ends.first[c], c);
+        const Ints second = expand(candidate.ends.second[c], c);
+        palette[c][0] = to_floats(first);
+        palette[c][1] = to_floats(third(2 * first + second + 1));
+        palette[c][2] = to_floats(third(first + 2 * second + 1));
+        palette[c][3] = to_floats(second);
+        const Floats difference = palette[c][3] - palette[c][0];
+        square += difference * difference;
+    }
+    const Floats scale = 3.0f / larger(square, all(1.0f));
+    Floats axis[3];
+    Floats origin = all(0.5f);
+    for (int c = 0; c < 3; ++c) {
+        axis[c] = (palette[c][3] - palette[c][0]) * scale;
+        origin -= palette[c][0] * axis[c];
+    }
+    candidate.total = Floats{};
+    for (int i = 0; i < 16; ++i) {
+        Floats along = origin;
+        for (int c = 0; c < 3; ++c) along += colors.channel[c].of[i] * axis[c];
+        const Ints one = along >= 1.0f;
+        const Ints two = along >= 2.0f;
+        const Ints three = along >= 3.0f;
+        candidate.steps.of[i] = to_floats(-(one + two + three));
+        Floats error{};
+        for (int c = 0; c < 3; ++c) {
+            const Floats upper = two ? palette[c][2] : palette[c][1];
+            const Floats decoded = three ? palette[c][3] : one ? upper : palette[c][0];
+            const Floats difference = colors.channel[c].of[i] - decoded;
+            error += difference * difference;
+        }
+        candidate.errors.of[i] = error;
+        candidate.total += error;
+    }
+}
+
+/// The ends on the line through the mean along the direction in which the colours differ most.
+CW2_INLINE Ends principal_ends(const Colors& colors, Ints& solid) {
+    Floats mean[3];
+    for (int c = 0; c < 3; ++c) {
+        Floats sum{};
+        for (const Floats value : colors.channel[c].of) sum += value;
+        mean[c] = sum * (1.0f / 16.0f);
+    }
+    Floats covariance[3][3]{};
+    for (int i = 0; i < 16; ++i) {
+        Floats off[3];
+        for (int c = 0; c < 3; ++c) off[c] = colors.channel[c].of[i] - mean[c];
+        for (int a = 0; a < 3; ++a) {
+            for (int b = a; b < 3; ++b) covariance[a][b] += off[a] * off[b];
+        }
+    }
+    for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b < a; ++b) covariance[a][b] = covariance[b][a];
+    }
+    solid = covariance[0][0] + covariance[1][1] + covariance[2][2] == 0.0f;
+
+    // Power iteration, from the row of the channel that varies most.
+    const Ints red =
+        (covariance[0][0] >= covariance[1][1]) & (covariance[0][0] >= covariance[2][2]);
+    const Ints green = covariance[1][1] >= covariance[2][2];
+    Floats axis[3];
+    for (int c = 0; c < 3; ++c) {
+        const Floats other = green ? covariance[1][c] : covariance[2][c];
+        axis[c] = red ? covariance[0][c] : other;
+    }
+    for (int step = 0; step < 4; ++step) {
+        Floats next[3];
+        for (int c = 0; c < 3; ++c) {
+            next[c] = covariance[c][0] * axis[0] + covariance[c][1] * axis[1] +
+                      covariance[c][2] * axis[2];
+        }
+        std::copy_n(next, 3, axis);
+    }
+    Floats longest = all(1e-20f);
+    for (const Floats part : axis) longest = larger(longest, larger(part, -part));
+    Floats square{};
+    for (Floats& part : axis) {
+        part /= longest;
+        square += part * part;
+    }
+    Floats least{};
+    Floats most{};
+    for (int i = 0; i < 16; ++i) {
+        Floats along{};
+        for (int c = 0; c < 3; ++c) along += (colors.channel[c].of[i] - mean[c]) * axis[c];
+        least = smaller(least, along);
+        most = larger(most, along);
+    }
+    Ends ends;
+    for (int c = 0; c < 3; ++c) {
+        const Floats unit = axis[c] / larger(square, all(1e-20f));
+        ends.first[c] = quantise(mean[c] + unit * most, c);
+        ends.second[c] = quantise(mean[c] + unit * least, c);
+    }
+    return ends;
+}
+
+/// The ends that fit the texels best (least squares) at their present steps; the present ends
+/// where all steps are equal.
+CW2_INLINE Ends refined_ends(const Colors& colors, const Candidate& candidate) {
+    Floats first_square{};
+    Floats product{};
+    Floats second_square{};
+    for (const Floats step : candidate.steps.of) {
+        first_square += (3.0f - step) * (3.0f - step);
+        product += step * (3.0f - step);
+        second_square += step * step;
+    }
+    const Floats determinant = first_square * second_square - product * product;
+    const Ints solvable = determinant > 0.5f;
+    const Floats scale = 3.0f / (solvable ? determinant : all(1.0f));
+    Ends ends;
+    for (int c = 0; c < 3; ++c) {
+        Floats sum{};
+        Floats second{};
+        for (int i = 0; i < 16; ++i) {
+            sum += colors.channel[c].of[i];
+            second += colors.channel[c].of[i] * candidate.steps.of[i];
+        }
+        const Floats first = 3.0f * sum - second;
+        ends.first[c] = quantise((second_square * first - product * second) * scale, c);
+        ends.second[c] = quantise((first_square * second - product * first) * scale, c);
+        ends.first[c] = solvable ? ends.first[c] : candidate.ends.first[c];
+        ends.second[c] = solvable ? ends.second[c] : candidate.ends.second[c];
+    }
+    return ends;
+}
+
+/// Replaces `best` in the lanes where `other` is nearer.
+CW2_INLINE void keep_better(const Candidate& other, Candidate& best) {
+    const Ints better = other.total < best.total;
+    for (int c = 0; c < 3; ++c) {
+        best.ends.first[c] = better ? other.ends.first[c] : best.ends.first[c];
+        best.ends.second[c] = better ? other.ends.second[c] : best.ends.second[c];
+    }
+    for (int i = 0; i < 16; ++i) {
+        best.steps.of[i] = better ? other.steps.of[i] : best.steps.of[i];
+        best.errors.of[i] = better ? other.errors.of[i] : best.errors.of[i];
+    }
+    best.total = smaller(best.total, other.total);
+}
+
+/// For each byte the two ends of `bits` bits between which, a third of the way, it is met best.
+class ThirdTable {
+ public:
+    explicit ThirdTable(int bits) {
+        std::array<int, 256> error;
+        error.fill(256);
+        const int count = 1 << bits;
+        for (int first = 0; first < count; ++first) {
+            for (int second = 0; second < count; ++second) {
+                const auto whole = [&](int end) {
+                    return end << (8 - bits) | end >> (2 * bits - 8);
+                };
+                const int met = (2 * whole(first) + whole(second) + 1) / 3;
+                for (int value = std::max(met - 4, 0); value <= std::min(met + 4, 255); ++value) {
+                    if (std::abs(value - met) >= error[value]) continue;
+                    error[value] = std::abs(value - met);
+                    ends[value] = {first, second};
+                }
+            }
+        }
+    }
+    std::array<std::array<int, 2>, 256> ends{};
+};
+
+/// Ends for blocks of one colour; the others keep theirs.
+void solid_ends(const Colors& colors, const Ints& solid, Ends& ends) {
+    static const ThirdTable five(5);
+    static const ThirdTable six(6);
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        if (!solid[lane]) continue;
+        for (int c = 0; c < 3; ++c) {
+            const auto value = static_cast<std::size_t>(colors.channel[c].of[0][lane]);
+            const auto& pair = (kBits[c] == 5 ? five : six).ends[value];
+            ends.first[c][lane] = pair[0];
+            ends.second[c][lane] = pair[1];
+        }
+    }
+}
+
+CW2_INLINE bool any(Ints mask) {
+    std::int32_t sum = 0;
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) sum |= mask[lane];
+    return sum != 0;
+}
+
+CW2_INLINE void pack(const Candidate& best, Ints& low, Ints& high) {
+    const Ints first = best.ends.first[0] << 11 | best.ends.first[1] << 5 | best.ends.first[2];
+    const Ints second = best.ends.second[0] << 11 | best.ends.second[1] << 5 | best.ends.second[2];
+    // The larger comes first: else a block would mean three colours and black. (Between equal ends
+    // match() makes no step, and index 0 is the same in both.)
+    const Ints swapped = first < second;
+    low = swapped ? second | first << 16 : first | second << 16;
+    high = Ints{};
+    for (int i = 0; i < 16; ++i) {
+        const Ints steps = to_ints(best.steps.of[i]);
+        const Ints along = swapped ? 3 - steps : steps;
+        // The ends come first, then what lies between them.
+        const Ints index = along == 0 ? Ints{} : along == 3 ? Ints{} + 1 : along + 1;
+        high |= index << 2 * i;
+    }
+}
+
+CW2_INLINE double encode_colors(const Place& place, std::byte* out) {
+    Ints texels[16];
+    gather<std::uint32_t>(place, texels);
+    Colors colors;
+    for (int c = 0; c < 3; ++c) channel(texels, c, colors.channel[c]);
+    Ints solid;
+    Candidate best;
+    best.ends = principal_ends(colors, solid);
+    if (any(solid)) solid_ends(colors, solid, best.ends);
+    match(colors, best);
+    Candidate next = best;
+    for (int round = 0; round < 2; ++round) {
+        next.ends = refined_ends(colors, next);
+        match(colors, next);
+        keep_better(next, best);
+    }
+    Ints low;
+    Ints high;
+    pack(best, low, high);
+    store(place, low, high, out, 8);
+    return sum_inside(best.errors, place);
+}
+
+// ---- BC5 ----
+
+CW2_INLINE Floats square_root(Floats values) {
+    Floats roots;
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) roots[lane] = std::sqrt(values[lane]);
+    return roots;
+}
+
+CW2_INLINE double encode_normals(const Place& place, std::byte* out) {
+    Ints texels[16];
+    gather<std::uint32_t>(place, texels);
+    Values decoded[2];
+    for (int c = 0; c < 2; ++c) {
+        channel(texels, c, decoded[c]);
+        Ints low;
+        Ints high;
+        encode_scalars(decoded[c], 0, low, high);
+        store(place, low, high, out + 8 * c, 16);
+    }
+    Values errors;
+    for (int i = 0; i < 16; ++i) {
+        const auto component = [&](int c) {
+            return to_floats(texels[i] >> 8 * c & 255) * (2.0f / 255.0f) - 1.0f;
+        };
+        const Floats x = decoded[0].of[i] * (2.0f / 255.0f) - 1.0f;
+        const Floats y = decoded[1].of[i] * (2.0f / 255.0f) - 1.0f;
+        const Floats z = square_root(larger(1.0f - x * x - y * y, Floats{}));
+        const Floats off[3]{x - component(0), y - component(1), z - component(2)};
+        errors.of[i] = off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
+    }
+    return sum_inside(errors, place) * (127.5 * 127.5);
+}
+
+}  // namespace
+
+CW2_EVERY_CPU double encode_bc1_row(const PlainLevel& level, std::uint32_t top, std::byte* out) {
+    double error = 0.0;
+    for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += 8 * kLanes) {
+        error += encode_colors({level, left, top}, out);
+    }
+    return error;
+}
+
+CW2_EVERY_CPU double encode_bc4_row(const PlainLevel& level, std::uint32_t top, std::uint32_t limit,
+                                    std::byte* out) {
+    double error = 0.0;
+    for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += 8 * kLanes) {
+        const Place place{level, left, top};
+        Ints texels[16];
+        gather<std::uint8_t>(place, texels);
+        Values decoded;
+        for (int i = 0; i < 16; ++i) decoded.of[i] = to_floats(texels[i]);
+        Ints low;
+        Ints high;
+        encode_scalars(decoded, static_cast<std::int32_t>(limit), low, high);
+        store(place, low, high, out, 8);
+        for (int i = 0; i < 16; ++i) {
+            const Floats difference = to_floats(texels[i]) - decoded.of[i];
+            decoded.of[i] = difference * difference;
+        }
+        error += sum_inside(decoded, place);
+    }
+    return error;
+}
+
+CW2_EVERY_CPU double encode_bc5_row(const PlainLevel& level, std::uint32_t top, std::byte* out) {
+    double error = 0.0;
+    for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += 16 * kLanes) {
+        error += encode_normals({level, left, top}, out);
+    }
+    return error;
+}
+
+}  // namespace bake

@@ -1,0 +1,94 @@
+// The module around OpenImageIO, loaded by read_image.cpp when the first image is read: linking it
+// would make every start of the program load some 250 libraries, a third of a second and 130 MiB.
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <new>
+
+#include "cw2-bake/textures/read_image.h"
+
+namespace {
+
+using bake::Image;
+using bake::ImageError;
+using bake::SampleType;
+
+/// Sets the type in which the samples are kept: the file's own if 8 or 16 bits hold it.
+OIIO::TypeDesc choose_type(OIIO::TypeDesc stored, Image& image) {
+    switch (stored.basetype) {
+        case OIIO::TypeDesc::UINT8:
+            image.type = SampleType::u8;
+            return OIIO::TypeDesc::UINT8;
+        case OIIO::TypeDesc::UINT16:
+            image.type = SampleType::u16;
+            return OIIO::TypeDesc::UINT16;
+        default:
+            image.type = SampleType::f32;
+            return OIIO::TypeDesc::FLOAT;
+    }
+}
+
+void check_flat(const OIIO::ImageSpec& spec) {
+    bake::check_extent(spec.width, spec.height);
+    if (spec.nchannels < 1) {
+        throw ImageError("has no texels");
+    }
+    if (spec.depth > 1 || spec.deep) {
+        throw ImageError("is not a flat image");
+    }
+}
+
+Image read(const char* path) {
+    OIIO::ImageSpec hints;
+    hints["oiio:UnassociatedAlpha"] = 1;
+    const auto input = OIIO::ImageInput::open(path, &hints);
+    if (!input) {
+        throw ImageError(OIIO::geterror());
+    }
+    const OIIO::ImageSpec& spec = input->spec();
+    check_flat(spec);
+
+    Image image;
+    image.width = static_cast<std::uint32_t>(spec.width);
+    image.height = static_cast<std::uint32_t>(spec.height);
+    const int channels = std::min(spec.nchannels, 4);
+    image.channels = static_cast<std::uint32_t>(channels);
+    image.has_alpha = channels % 2 == 0 && spec.alpha_channel == channels - 1;
+    const OIIO::TypeDesc type = choose_type(spec.format, image);
+    image.samples.resize(std::size_t{image.width} * image.height * image.channels * type.size());
+    // A JPEG that ends early counts as read, and leaves a message all the same.
+    if (!input->read_image(0, 0, 0, channels, type, image.samples.data()) || input->has_error()) {
+        throw ImageError(input->geterror());
+    }
+    return image;
+}
+
+/// The bake runs an image per thread already.
+void forbid_inner_threads() {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) bool cw2_bake_image_reader(const char* path,
+                                                                             Image& image,
+                                                                             std::string& error) {
+    try {
+        static std::once_flag once;
+        std::call_once(once, forbid_inner_threads);
+        image = read(path);
+        return true;
+    } catch (const std::bad_alloc&) {
+        error = "needs more memory than there is";
+    } catch (const std::exception& exception) {
+        error = exception.what();
+    } catch (...) {
+        error = "cannot be read";
+    }
+    return false;
+}
+
+static_assert(std::is_same_v<decltype(cw2_bake_image_reader), bake::ImageReader>);

@@ -1,0 +1,130 @@
+#include "cw2-bake/textures/read_image.h"
+
+#include <dlfcn.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <new>
+#include <system_error>
+#include <utility>
+
+#include "common/io.h"
+#include "cw2-bake/textures/read_common_image.h"
+
+namespace bake {
+namespace {
+
+/// The module lies beside the executable and stays loaded.
+ImageReader* load_image_reader() {
+    const std::filesystem::path module =
+        std::filesystem::read_symlink("/proc/self/exe").parent_path() / kImageReaderModule;
+    // Lazy: binding every function of 250 libraries takes longer than decoding an image.
+    void* handle = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    void* symbol = handle ? dlsym(handle, kImageReaderSymbol) : nullptr;
+    if (!symbol) {
+        throw ImageError(std::string("no image can be read: ") + dlerror());
+    }
+    return reinterpret_cast<ImageReader*>(symbol);
+}
+
+/// Throws for what no decoder should be asked to open: a pipe would block it for ever.
+void check_regular_file(const std::filesystem::path& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (status.type() == std::filesystem::file_type::not_found) {
+        throw ImageError("no such file");
+    }
+    if (error) {
+        throw ImageError(error.message());
+    }
+    if (status.type() == std::filesystem::file_type::directory) {
+        throw ImageError("is a directory");
+    }
+    if (status.type() != std::filesystem::file_type::regular) {
+        throw ImageError("is not a regular file");
+    }
+    if (access(path.c_str(), R_OK) != 0) {
+        throw ImageError(std::strerror(errno));
+    }
+    if (std::filesystem::file_size(path, error) == 0) {
+        throw ImageError("is empty");
+    }
+}
+
+/// Messages of libraries may have several lines, and often end with one.
+std::string one_line(std::string text) {
+    while (!text.empty() && text.back() == '\n') {
+        text.pop_back();
+    }
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text.empty() ? "cannot be read" : text;
+}
+
+Image read_regular_file(const std::filesystem::path& path) {
+    static ImageReader* const reader = load_image_reader();
+    Image image;
+    std::string error;
+    if (!reader(path.c_str(), image, error)) {
+        throw ImageError(one_line(std::move(error)));
+    }
+    return image;
+}
+
+std::optional<Image> read_common(std::span<const std::byte> contents) {
+    try {
+        return read_common_image(contents);
+    } catch (const std::bad_alloc&) {
+        throw ImageError("needs more memory than there is");
+    }
+}
+
+/// A file in memory that lives as long as this.
+class MemoryFile {
+ public:
+    explicit MemoryFile(std::span<const std::byte> contents)
+        : descriptor_(memfd_create("image", MFD_CLOEXEC)) {
+        while (descriptor_ >= 0 && !contents.empty()) {
+            const ssize_t written = ::write(descriptor_, contents.data(), contents.size());
+            if (written <= 0) break;
+            contents = contents.subspan(static_cast<std::size_t>(written));
+        }
+        if (descriptor_ < 0 || !contents.empty()) {
+            const std::string cause = std::strerror(errno);
+            close(descriptor_);
+            throw ImageError(cause);
+        }
+    }
+    ~MemoryFile() { close(descriptor_); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+
+    std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+    int descriptor_;
+};
+
+}  // namespace
+
+Image read_image(const std::filesystem::path& path) {
+    check_regular_file(path);
+    try {
+        const common::MappedFile file(path);
+        if (auto image = read_common(file.bytes())) return std::move(*image);
+    } catch (const common::FileError&) {
+        // Whoever reads it next says what is wrong with it.
+    }
+    return read_regular_file(path);
+}
+
+Image read_image(std::span<const std::byte> contents) {
+    if (contents.empty()) throw ImageError("is empty");
+    if (auto image = read_common(contents)) return std::move(*image);
+    // Not every decoder of OpenImageIO reads from memory; all read files.
+    return read_regular_file(MemoryFile(contents).path());
+}
+
+}  // namespace bake

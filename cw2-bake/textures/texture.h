@@ -1,0 +1,56 @@
+// Finished textures, as the stages after them know them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/io.h"
+#include "mesh-format/layout.h"
+
+namespace bake {
+
+enum class TextureMode {
+    bc,        ///< in blocks, where that is good enough; roughness made fit for its normal map
+    lossless,  ///< 8 bits a channel
+    none,      ///< materials keep their factors only
+};
+
+/// One finished texture; `payload` is as mesh_format::TextureRecord describes.
+struct Texture {
+    std::string name;
+    mesh_format::TextureFormat format{};
+    bool clamp = false;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    float psnr = 0.0f;  ///< as in mesh_format::TextureRecord
+    std::vector<std::byte> payload;
+    std::span<const std::byte> earlier_payload;  ///< instead, in TextureSet::earlier_file
+    std::uint64_t checksum = 0;  ///< mesh_format::checksum() of bytes(), once they are finished
+
+    std::span<const std::byte> bytes() const {
+        return payload.empty() ? earlier_payload : std::span<const std::byte>(payload);
+    }
+};
+
+/// What one material samples: indices into TextureSet::textures, or mesh_format::kNoTexture.
+struct MaterialTextures {
+    std::uint32_t base_color = mesh_format::kNoTexture;
+    std::uint32_t roughness = mesh_format::kNoTexture;
+    std::uint32_t metalness = mesh_format::kNoTexture;
+    std::uint32_t normal = mesh_format::kNoTexture;
+    std::uint32_t alpha_mask = mesh_format::kNoTexture;
+    bool roughness_holds_factor = false;  ///< the material's factor is in its texture already
+};
+
+struct TextureSet {
+    std::vector<Texture> textures;  ///< equal textures are stored once, in order of first use
+    std::vector<MaterialTextures> materials;  ///< one a material
+    std::vector<mesh_format::SourceRecord> sources;
+    std::shared_ptr<const common::MappedFile> earlier_file;
+};
+
+}  // namespace bake

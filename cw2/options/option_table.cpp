@@ -1,0 +1,266 @@
+#include "cw2/options/option_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <type_traits>
+
+#include "common/quoted_text.h"
+
+namespace cw2 {
+
+namespace {
+
+/// Reads the whole of `text` as a number; floats are finite.
+template <typename T>
+requires std::is_arithmetic_v<T>
+bool read_value(std::string_view text, T& value) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc{} && end == text.data() + text.size() &&
+           std::isfinite(static_cast<double>(value));
+}
+
+bool read_value(std::string_view text, glm::vec3& vector) {
+    for (int i = 0; i < 3; ++i) {
+        const std::size_t comma = std::min(text.find(','), text.size());
+        if ((comma == text.size()) != (i == 2) || !read_value(text.substr(0, comma), vector[i])) {
+            return false;
+        }
+        text.remove_prefix(std::min(comma + 1, text.size()));
+    }
+    return true;
+}
+
+bool read_value(std::string_view text, std::string& value) {
+    value = text;
+    return true;
+}
+
+bool read_value(std::string_view text, std::filesystem::path& value) {
+    value = text;
+    return true;
+}
+
+bool read_value(std::string_view text, PictureSize& size) {
+    const std::size_t cross = text.find('x');
+    return cross != std::string_view::npos && read_value(text.substr(0, cross), size.width) &&
+           read_value(text.substr(cross + 1), size.height) && size.width > 0 && size.height > 0;
+}
+
+bool read_value(std::string_view text, FalseColor& value) {
+    if (text == "auto") return true;
+    const std::size_t comma = text.find(',');
+    ValueRange& range = value.range.emplace();
+    if (comma == std::string_view::npos || !read_value(text.substr(0, comma), range.low) ||
+        !read_value(text.substr(comma + 1), range.high) || range.low >= range.high) {
+        return false;
+    }
+    // What positions are computed with, see false_color.h.
+    return std::isfinite(range.low > 0.0f ? range.high / range.low : range.high - range.low);
+}
+
+constexpr std::string_view kNoNormalMap = ":no-normal-map";
+constexpr std::string_view kNoAlphaMask = ":no-alpha-mask";
+
+bool read_value(std::string_view text, Side& side) {
+    const std::size_t end = std::min(text.find(':'), text.size());
+    const std::optional<View> view = view_named(text.substr(0, end));
+    side.view = view.value_or(side.view);
+    for (text.remove_prefix(end); !text.empty();) {
+        if (text.starts_with(kNoNormalMap)) {
+            side.normal_map = false;
+            text.remove_prefix(kNoNormalMap.size());
+        } else if (text.starts_with(kNoAlphaMask)) {
+            side.alpha_mask = false;
+            text.remove_prefix(kNoAlphaMask.size());
+        } else {
+            return false;
+        }
+    }
+    return view.has_value();
+}
+
+bool read_value(std::string_view text, std::array<Side, 2>& sides) {
+    const std::size_t comma = text.find(',');
+    return comma != std::string_view::npos && read_value(text.substr(0, comma), sides[0]) &&
+           read_value(text.substr(comma + 1), sides[1]);
+}
+
+bool read_value(std::string_view text, FrameRange& range) {
+    const std::optional<FrameRange> read = frame_range_of(text);
+    range = read.value_or(range);
+    return read.has_value();
+}
+
+bool read_value(std::string_view text, Orbit& orbit) {
+    orbit = text == "light" ? Orbit::light : Orbit::camera;
+    return text == "light" || text == "camera";
+}
+
+template <typename T>
+bool read_value(std::string_view text, std::optional<T>& value) {
+    return read_value(text, value.emplace());
+}
+
+// Numbers are written with as many digits as it takes to read the same number again.
+template <typename T>
+requires std::is_arithmetic_v<T> std::string toml_of(T value) {
+    // With a point, since the integer -0 is 0.
+    if constexpr (std::is_floating_point_v<T>) return fmt::format("{:#}", value);
+    return fmt::format("{}", value);
+}
+std::string toml_of(const glm::vec3& v) {
+    return fmt::format("[{}, {}, {}]", toml_of(v.x), toml_of(v.y), toml_of(v.z));
+}
+std::string toml_of(const std::string& text) {
+    return common::quoted_text(text);
+}
+std::string toml_of(const std::filesystem::path& path) {
+    return path.empty() ? std::string() : common::quoted_text(path.string());
+}
+std::string toml_of(const PictureSize& size) {
+    return fmt::format("\"{}x{}\"", size.width, size.height);
+}
+std::string toml_of(const FalseColor& value) {
+    if (!value.range) return "\"auto\"";
+    return fmt::format("[{}, {}]", toml_of(value.range->low), toml_of(value.range->high));
+}
+std::string toml_of(const Side& side) {
+    return fmt::format("\"{}{}{}\"", kViewNames[side.view], side.normal_map ? "" : kNoNormalMap,
+                       side.alpha_mask ? "" : kNoAlphaMask);
+}
+std::string toml_of(const std::array<Side, 2>& sides) {
+    return fmt::format("[{}, {}]", toml_of(sides[0]), toml_of(sides[1]));
+}
+std::string toml_of(const FrameRange& range) {
+    return fmt::format("\"{}..{}/{}\"", range.first, range.last, range.count);
+}
+std::string toml_of(Orbit orbit) {
+    return orbit == Orbit::light ? "\"light\"" : "\"camera\"";
+}
+template <typename T>
+std::string toml_of(const std::optional<T>& value) {
+    return value ? toml_of(*value) : std::string();
+}
+
+/// A setting of the `member`, whose values in range are those that are `valid`.
+template <typename T>
+Setting value(const std::string& name, const std::string& form, const std::string& description,
+              T Options::*member, const std::function<bool(const T&)>& valid = {}) {
+    return {name, form, description,
+            [=](Options& options, const std::string& text) {
+                T read{};
+                if (!read_value(text, read) || (valid && !valid(read))) {
+                    return fmt::format("'{}' is not {}", text, form);
+                }
+                options.*member = std::move(read);
+                return std::string();
+            },
+            [=](const Options& options) { return toml_of(options.*member); }};
+}
+
+/// A setting that makes the `member` what `meaning` says.
+Setting flag(const std::string& name, const std::string& description, bool Options::*member,
+             bool meaning = true) {
+    return {name, "", description,
+            [=](Options& options, const std::string& text) {
+                if (text != "true" && text != "false") {
+                    return fmt::format("'{}' is neither true nor false", text);
+                }
+                options.*member = (text == "true") == meaning;
+                return std::string();
+            },
+            [=](const Options& options) {
+                return options.*member == meaning ? std::string("true") : std::string();
+            }};
+}
+
+Setting view_setting() {
+    return {"view", "NAME", "what to show; --list-views names all [shaded]",
+            [](Options& options, const std::string& text) {
+                const std::optional<View> view = view_named(text);
+                if (!view) {
+                    return fmt::format("no view is named '{}'; --list-views names all", text);
+                }
+                options.view = *view;
+                return std::string();
+            },
+            [](const Options& options) { return common::quoted_text(kViewNames[options.view]); }};
+}
+
+template <typename T>
+std::function<bool(const std::optional<T>&)> between(T low, T high) {
+    return [=](const std::optional<T>& value) { return *value >= low && *value <= high; };
+}
+
+}  // namespace
+
+std::vector<Setting> all_settings() {
+    using O = Options;
+    return {
+        value("scene", "SCENE.cw2mesh", "file baked by cw2-bake", &O::scene),
+        value("output", "FILE.png|FILE.exr", "write a picture and end", &O::output),
+        value("size", "WIDTHxHEIGHT", "pixels [1280x720]", &O::size),
+        view_setting(),
+        value("split", "LEFT,RIGHT",
+              "two views side by side; VIEW:no-normal-map and VIEW:no-alpha-mask are sides, too",
+              &O::split),
+        value<float>("divider", "FRACTION", "where the right side begins, 0 to 1 [0.5]",
+                     &O::divider, [](const float& x) { return x >= 0.0f && x <= 1.0f; }),
+        value<float>("exposure", "STOPS",
+                     "multiplies what a PNG or the window shows by 2^STOPS [0]", &O::exposure,
+                     [](const float& x) { return std::abs(x) <= 64.0f; }),
+        value("false-color", "auto|LOW,HIGH",
+              "shows luminance as colours, by its logarithm if LOW > 0; auto: the view's range",
+              &O::false_color),
+        value("camera-position", "X,Y,Z",
+              "where the camera is [the file's, else the whole scene in view]",
+              &O::camera_position),
+        value("camera-target", "X,Y,Z", "where it looks [the file's, else the scene's centre]",
+              &O::camera_target),
+        value("fov", "DEGREES", "vertical field of view, 1 to 179 [the file's, else 60]",
+              &O::vertical_fov, between(1.0f, 179.0f)),
+        value("light-position", "X,Y,Z",
+              "where the light's orbit starts [the file's, else above the scene]",
+              &O::light_position),
+        value("light-color", "R,G,B", "linear [the file's, else 1,1,1]", &O::light_color),
+        value("ambient", "R,G,B", "ambient light, linear [0.02,0.02,0.02]", &O::ambient),
+        value("background", "R,G,B", "linear [0.1,0.1,0.1]", &O::background),
+        value("time", "SECONDS", "instant of the light's orbit, 1 rad/s about z [0]", &O::time),
+        value("roughness", "0..1", "roughness of every material [its own]", &O::roughness,
+              between(0.0f, 1.0f)),
+        value("metalness", "0..1", "metalness of every material [its own]", &O::metalness,
+              between(0.0f, 1.0f)),
+        value<float>("normal-strength", "0..10", "factor on the slopes of all normal maps [1]",
+                     &O::normal_strength,
+                     [](const float& factor) { return factor >= 0.0f && factor <= 10.0f; }),
+        flag("no-normal-map", "shade with the vertex normals", &O::normal_map, false),
+        flag("no-alpha-mask", "draw what alpha masks cut away", &O::alpha_mask, false),
+        value<std::optional<std::uint32_t>>(
+            "samples", "1|4", "samples a pixel [4; 1 in a window on a CPU device]", &O::samples,
+            [](const std::optional<std::uint32_t>& n) { return *n == 1 || *n == 4; }),
+        value("anisotropy", "1..16",
+              "largest anisotropy of texture filtering [16 on GPUs, 1 on CPUs]", &O::anisotropy,
+              between<std::uint32_t>(1, 16)),
+        value("device", "INDEX|NAME", "index or part of the name [the fastest kind]", &O::device),
+        flag("list-devices", "print the Vulkan devices and end", &O::list_devices),
+        flag("list-views", "print the views and end", &O::list_views),
+        flag("validation", "run Vulkan's validation layers; any message is a failure",
+             &O::validation),
+        value("frames", "N|A..B/N",
+              "N pictures of one turn, or those from A to B of 0 to N - 1; %04d in --output is the "
+              "frame's number",
+              &O::frames),
+        value("orbit", "camera|light", "what goes around in --frames [camera]", &O::orbit),
+        value("stats", "FILE.json", "write timings and counts as JSON (with --output)", &O::stats),
+        value<std::uint32_t>(
+            "bench", "FRAMES", "draw N more frames and print their times (with --output)",
+            &O::bench_frames, [](const std::uint32_t& n) { return n <= 1'000'000; }),
+    };
+}
+
+}  // namespace cw2

@@ -1,0 +1,138 @@
+#include "cw2/options/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <span>
+#include <vector>
+
+#include "common/io.h"
+#include "cw2/options/config.h"
+#include "cw2/options/option_table.h"
+#include "cw2/render/image_file.h"
+
+namespace cw2 {
+
+namespace {
+
+/// What a setting of the name, command line or config file, has told.
+void take(const Setting& setting, const std::string& text, const std::string& origin,
+          Options& options) {
+    // Nothing has set it before; what a config file says of it will not count.
+    if (text == "default" && setting.name != "scene") return;
+    const std::string problem = setting.read(options, text);
+    if (!problem.empty()) throw UsageError(fmt::format("{}: {}", origin, problem));
+}
+
+/// `setting` and `options` must outlive the parsing.
+void add_to(CLI::App& app, const Setting& setting, Options& options) {
+    const auto take_over = [&options, &setting](const std::string& text) {
+        take(setting, text, "--" + setting.name, options);
+    };
+    const std::string name = setting.command_line_name();
+    if (setting.form.empty()) {
+        app.add_flag_function(
+            name, [take_over](std::int64_t count) { take_over(count > 0 ? "true" : "false"); },
+            setting.description);
+    } else {
+        app.add_option_function<std::string>(name, take_over, setting.description)
+            ->type_name(setting.form);
+    }
+}
+
+/// Takes over the file's settings that the command line does not have; it looks at all of them.
+void apply_config(const std::filesystem::path& path, const std::vector<Setting>& settings,
+                  const CLI::App& app, Options& options) {
+    for (const ConfigEntry& entry : read_config(path)) {
+        const auto setting =
+            std::find_if(settings.begin(), settings.end(),
+                         [&](const Setting& candidate) { return candidate.name == entry.key; });
+        const std::string origin = fmt::format("{}:{}", path.string(), entry.line);
+        if (setting == settings.end()) {
+            throw UsageError(fmt::format("{}: no option is named '{}'", origin, entry.key));
+        }
+        const std::string name = setting->name == "scene" ? "SCENE" : "--" + setting->name;
+        Options ignored = options;
+        take(*setting, entry.value, origin + ": " + entry.key,
+             app.get_option(name)->count() > 0 ? ignored : options);
+    }
+}
+
+void require_sense(const Options& options) {
+    if (options.list_devices || options.list_views) return;
+    if (options.scene.empty()) throw UsageError("no scene is given; see --help");
+    if (options.output && !image_kind(*options.output)) {
+        throw UsageError(
+            fmt::format("--output: '{}' ends in neither .png nor .exr", options.output->string()));
+    }
+    if (!options.output && (options.stats || options.bench_frames > 0 || options.frames)) {
+        throw UsageError("--stats, --bench and --frames need --output");
+    }
+    if (options.stats) {
+        for (const std::filesystem::path& other : {options.scene, *options.output}) {
+            std::error_code ignored;
+            if (*options.stats == other ||
+                std::filesystem::equivalent(*options.stats, other, ignored)) {
+                throw UsageError(fmt::format("--stats would replace {}", other.string()));
+            }
+        }
+    }
+    if (!options.frames && options.orbit) throw UsageError("--orbit needs --frames");
+    if (!options.frames) return;
+    if (options.bench_frames > 0) throw UsageError("--bench and --frames exclude each other");
+    if (options.frames->size() > 1 && !frame_name(options.output->string(), 0)) {
+        throw UsageError(
+            fmt::format("--output: '{}' is no pattern for several frames, such as name_%04d.png",
+                        options.output->string()));
+    }
+}
+
+}  // namespace
+
+std::optional<Options> parse_options(int argc, const char* const* argv) {
+    const std::vector<Setting> settings = all_settings();
+    Options options;
+    CLI::App app(
+        "Draws a .cw2mesh file: in a window, or with --output into a picture with no display.",
+        "cw2");
+    app.set_version_flag("--version", "cw2 " CW2_VERSION);
+    for (const Setting& setting : settings) add_to(app, setting, options);
+    std::optional<std::filesystem::path> config;
+    app.add_option("--config", config,
+                   "read options from a file of `name = value` lines; the command line wins, and "
+                   "--NAME default or --FLAG=false undoes")
+        ->type_name("FILE.toml");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        app.exit(success, std::cout, std::cerr);
+        return std::nullopt;
+    } catch (const CLI::ParseError& error) {
+        throw UsageError(error.what());
+    } catch (const std::logic_error&) {
+        // CLI11 leaves it to std::stoll.
+        throw UsageError("a switch with '=' is followed by true or false");
+    }
+    if (config) {
+        apply_config(*config, settings, app, options);
+        // A split of the file would hide the view that the command line asks for.
+        if (app.count("--view") > 0 && app.count("--split") == 0) options.split.reset();
+    }
+    require_sense(options);
+    return options;
+}
+
+void write_config(const std::filesystem::path& path, const Options& options) {
+    std::string text = "# Options for cw2 --config.\n";
+    for (const Setting& setting : all_settings()) {
+        const std::string value = setting.write(options);
+        if (!value.empty()) text += setting.name + " = " + value + '\n';
+    }
+    common::OutputFile file(path);
+    file.write(std::as_bytes(std::span(text)));
+    file.commit();
+}
+
+}  // namespace cw2

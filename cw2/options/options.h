@@ -1,0 +1,73 @@
+// The command line, and the config files that stand for one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+
+#include "cw2/options/config.h"
+#include "cw2/render/frame_settings.h"
+#include "cw2/render/frames.h"
+#include "cw2/render/view.h"
+
+namespace cw2 {
+
+/// Pixels, neither 0.
+struct PictureSize {
+    std::uint32_t width = 1280;
+    std::uint32_t height = 720;
+    bool operator==(const PictureSize&) const = default;
+};
+
+inline constexpr float kVerticalFov = 60.0f;  ///< degrees, where nobody asks for another
+
+struct Options {
+    std::filesystem::path scene;
+    std::optional<std::filesystem::path> output;  ///< none: open a window
+    PictureSize size;
+    View view = interop::kViewShaded;
+    std::optional<std::array<Side, 2>> split;  ///< in place of `view`
+    float divider = 0.5f;                      ///< in [0, 1]
+    float exposure = 0.0f;                     ///< stops, in [-64, 64]
+    std::optional<FalseColor> false_color;
+    std::optional<std::uint32_t> samples;  ///< 1 or 4; none: by the device and the output
+    std::optional<glm::vec3> camera_position;
+    std::optional<glm::vec3> camera_target;
+    std::optional<float> vertical_fov;  ///< degrees, in (0, 180); none: kVerticalFov
+    std::optional<glm::vec3> light_position;
+    std::optional<glm::vec3> light_color;  ///< none: 1, 1, 1
+    glm::vec3 ambient{0.02f};
+    glm::vec3 background{0.1f};
+    double time = 0.0;               ///< seconds of the light's orbit
+    std::optional<float> roughness;  ///< of every material, in [0, 1]; none: its own
+    std::optional<float> metalness;  ///< the same
+    float normal_strength = 1.0f;    ///< a factor on the slopes of all normal maps, in [0, 10]
+    bool normal_map = true;
+    bool alpha_mask = true;
+    std::optional<std::uint32_t> anisotropy;  ///< 1 to 16; none: 16 on GPUs, 1 on CPUs
+    std::optional<std::string> device;
+    bool list_devices = false;
+    bool list_views = false;
+    bool validation = false;
+    std::optional<FrameRange> frames;  ///< a turntable of pictures
+    std::optional<Orbit> orbit;        ///< in `frames`; none: the camera's
+    std::optional<std::filesystem::path> stats;
+    std::uint32_t bench_frames = 0;  ///< further frames to time
+
+    bool operator==(const Options&) const = default;
+};
+
+/// Reads the command line, and the file that its --config names, whose keys are the names of the
+/// options. Relative paths in either are relative to the working directory. `--help` and
+/// `--version` print and give nothing. Throws UsageError, and common::FileError where the
+/// config file cannot be read.
+std::optional<Options> parse_options(int argc, const char* const* argv);
+
+/// Writes a file that `--config` reads as these options, every number exactly. It replaces `path`
+/// whole. Throws common::FileError.
+void write_config(const std::filesystem::path& path, const Options& options);
+
+}  // namespace cw2

@@ -1,0 +1,330 @@
+#include "cw2/render/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "common/file_kind.h"
+#include "cw2/render/decode_textures.h"
+#include "mesh-format/blocks.h"
+#include "mesh-format/decode.h"
+
+namespace cw2 {
+
+namespace {
+
+using mesh_format::Document;
+using mesh_format::MaterialRecord;
+using mesh_format::MeshRecord;
+using mesh_format::TextureFormat;
+using mesh_format::TextureRecord;
+
+// Textures share allocations: devices allow as few as 4096 of them.
+constexpr VkDeviceSize kTextureBlockBytes = 64u << 20;
+
+VkFormat vulkan_format(TextureFormat format, bool decoded) {
+    switch (format) {
+        case TextureFormat::bc1_srgb:
+            return decoded ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_BC1_RGB_SRGB_BLOCK;
+        case TextureFormat::bc4_unorm:
+            return decoded ? VK_FORMAT_R8_UNORM : VK_FORMAT_BC4_UNORM_BLOCK;
+        case TextureFormat::bc5_unorm:
+            return decoded ? VK_FORMAT_R8G8_UNORM : VK_FORMAT_BC5_UNORM_BLOCK;
+        case TextureFormat::r8_unorm:
+            return VK_FORMAT_R8_UNORM;
+        case TextureFormat::rgba8_unorm:
+            return VK_FORMAT_R8G8B8A8_UNORM;
+        case TextureFormat::rgba8_srgb:
+            return VK_FORMAT_R8G8B8A8_SRGB;
+    }
+    return VK_FORMAT_UNDEFINED;
+}
+
+bool in_blocks(const TextureRecord& record) {
+    return mesh_format::block_extent(record.format) > 1;
+}
+
+ImageSettings image_settings(const TextureRecord& record, bool decode_blocks) {
+    return {.format = vulkan_format(record.format, decode_blocks),
+            .extent = {record.width, record.height},
+            .mip_count = record.mip_count,
+            .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
+}
+
+/// Binds each image to a part of a few large allocations.
+std::vector<Memory> bind_memory(const Device& device, const std::vector<VkImage>& images) {
+    std::vector<Memory> blocks;
+    VkDeviceSize block_size = 0;
+    VkDeviceSize used = 0;
+    std::uint32_t block_type = 0;
+    for (const VkImage image : images) {
+        VkMemoryRequirements needs;
+        vkGetImageMemoryRequirements(device.get(), image, &needs);
+        used = (used + needs.alignment - 1) / needs.alignment * needs.alignment;
+        if (blocks.empty() || used + needs.size > block_size ||
+            !(needs.memoryTypeBits & (1u << block_type))) {
+            block_size = std::max(kTextureBlockBytes, needs.size);
+            block_type =
+                device.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+            used = 0;
+            const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                            .allocationSize = block_size,
+                                            .memoryTypeIndex = block_type};
+            VkDeviceMemory memory = VK_NULL_HANDLE;
+            check(vkAllocateMemory(device.get(), &info, nullptr, &memory), "vkAllocateMemory");
+            blocks.emplace_back(device.get(), memory, block_size);
+        }
+        check(vkBindImageMemory(device.get(), image, blocks.back().get(), used),
+              "vkBindImageMemory");
+        used += needs.size;
+    }
+    return blocks;
+}
+
+std::vector<std::span<const std::byte>> levels_of(const TextureRecord& record,
+                                                  std::span<const std::byte> texels) {
+    std::vector<std::span<const std::byte>> levels;
+    std::uint64_t offset = record.offset;
+    for (std::uint32_t level = 0; level < record.mip_count; ++level) {
+        const std::uint64_t bytes =
+            mesh_format::mip_bytes(record.format, record.width, record.height, level);
+        levels.push_back(texels.subspan(offset, bytes));
+        offset += bytes;
+    }
+    return levels;
+}
+
+Sampler make_sampler(const Device& device, VkSamplerAddressMode mode, float anisotropy) {
+    const VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                   .magFilter = VK_FILTER_LINEAR,
+                                   .minFilter = VK_FILTER_LINEAR,
+                                   .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
+                                   .addressModeU = mode,
+                                   .addressModeV = mode,
+                                   .addressModeW = mode,
+                                   .anisotropyEnable = anisotropy > 1.0f,
+                                   .maxAnisotropy = anisotropy,
+                                   .maxLod = VK_LOD_CLAMP_NONE};
+    VkSampler sampler = VK_NULL_HANDLE;
+    check(vkCreateSampler(device.get(), &info, nullptr, &sampler), "vkCreateSampler");
+    return {device.get(), sampler};
+}
+
+Shading shading_of(const MaterialRecord& material) {
+    return material.flags & mesh_format::kAlphaMask ? Shading::alpha_mask : Shading::opaque;
+}
+
+std::uint32_t normal_map_of(const Document& document, const MaterialRecord& material) {
+    if (material.normal_texture == mesh_format::kNoTexture) return interop::kNormalMapAbsent;
+    return document.textures[material.normal_texture].format == TextureFormat::bc5_unorm
+               ? interop::kNormalMapXy
+               : interop::kNormalMapXyz;
+}
+
+interop::DrawConstants constants_of(const Document& document, const MeshRecord& mesh,
+                                    const MaterialRecord& material) {
+    interop::DrawConstants constants{};
+    constants.position_origin = glm::make_vec3(mesh.origin);
+    constants.position_step = document.scene.position_step;
+    constants.uv_origin = glm::make_vec2(mesh.uv_origin);
+    constants.uv_step = glm::make_vec2(mesh.uv_step);
+    constants.base_color = glm::make_vec3(material.base_color);
+    constants.roughness = material.roughness;
+    constants.metalness = material.metalness;
+    constants.alpha_cutoff = material.alpha_cutoff;
+    constants.normal_map = normal_map_of(document, material);
+    constants.normal_scale = material.normal_scale;
+    constants.back_normals = material.flags & mesh_format::kFlipBackNormals ? -1.0f : 1.0f;
+    constants.material = mesh.material;
+    return constants;
+}
+
+Buffer upload_buffer(const Device& device, Uploader& uploader, std::span<const std::byte> bytes,
+                     VkBufferUsageFlags usage) {
+    Buffer buffer = make_buffer(device, std::max<std::size_t>(bytes.size(), 4),
+                                usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::device);
+    uploader.write_buffer(buffer.handle.get(), bytes);
+    return buffer;
+}
+
+}  // namespace
+
+Scene::Scene(const Device& device, const Layouts& layouts, const Document& document,
+             const TextureSettings& settings)
+    : bounds_(bounds_of(document.scene)),
+      start_(start_of(document.scene)),
+      repeat_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, settings.anisotropy)),
+      clamp_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, settings.anisotropy)) {
+    Uploader uploader(device);
+    vertices_ =
+        upload_buffer(device, uploader, document.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+    indices_ = upload_buffer(device, uploader, std::as_bytes(document.indices),
+                             VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    upload_textures(device, document, settings.decode_blocks, uploader);
+    uploader.finish();
+
+    for (const MaterialRecord& material : document.materials) {
+        material_names_.emplace_back(document.text(material.name));
+    }
+    const std::vector<VkDescriptorSet> sets = make_material_sets(device, layouts, document);
+    for (const MeshRecord& mesh : document.meshes) {
+        const MaterialRecord& material = document.materials[mesh.material];
+        for (const auto& chunk : document.chunks.subspan(mesh.first_chunk, mesh.chunk_count)) {
+            chunks_.push_back({.center = glm::make_vec3(chunk.center),
+                               .radius = chunk.radius,
+                               .cone_axis = glm::make_vec3(chunk.cone_axis),
+                               .cone_cutoff = chunk.cone_cutoff,
+                               .draw = static_cast<std::uint32_t>(draws_.size()),
+                               .first_index = chunk.first_index,
+                               .index_count = chunk.index_count});
+        }
+        draws_.push_back({.constants = constants_of(document, mesh, material),
+                          .forms = {mesh.position_form, mesh.frame_form, mesh.uv_form},
+                          .shading = shading_of(material),
+                          .cull_back = (material.flags & mesh_format::kCullBack) != 0,
+                          .material = sets[mesh.material],
+                          .vertex_offset = mesh.vertex_offset,
+                          .index_offset = mesh.first_index * sizeof(std::uint16_t)});
+    }
+}
+
+void Scene::upload_textures(const Device& device, const Document& document, bool decode_blocks,
+                            Uploader& uploader) {
+    static constexpr std::byte kWhite[4] = {std::byte{255}, std::byte{255}, std::byte{255},
+                                            std::byte{255}};
+    constexpr TextureRecord kWhiteTexel{
+        .format = TextureFormat::rgba8_unorm, .width = 1, .height = 1, .mip_count = 1};
+    std::vector<VkImage> images;
+    const auto add = [&](const TextureRecord& record) {
+        textures_.push_back(
+            {.image = make_image_handle(device, image_settings(record, decode_blocks)),
+             .clamp = (record.flags & mesh_format::kClampToEdge) != 0});
+        images.push_back(textures_.back().image.get());
+    };
+    for (const TextureRecord& record : document.textures) add(record);
+    add(kWhiteTexel);
+    texture_memory_ = bind_memory(device, images);
+
+    std::vector<std::byte> decoded;
+    const auto upload = [&](std::size_t i, const TextureRecord& record,
+                            std::span<const std::span<const std::byte>> levels) {
+        const VkExtent2D extent{record.width, record.height};
+        if (decode_blocks && in_blocks(record)) {
+            uploader.write_image(images[i], extent,
+                                 {1, mesh_format::decoded_texel_bytes(record.format)},
+                                 decode_levels(record, levels, decoded));
+        } else {
+            uploader.write_image(
+                images[i], extent,
+                {mesh_format::block_extent(record.format), mesh_format::block_bytes(record.format)},
+                levels);
+        }
+        textures_[i].view =
+            make_image_view(device, images[i], image_settings(record, decode_blocks));
+    };
+    for (std::size_t i = 0; i < document.textures.size(); ++i) {
+        upload(i, document.textures[i], levels_of(document.textures[i], document.texels));
+    }
+    upload(document.textures.size(), kWhiteTexel, std::array{std::span<const std::byte>(kWhite)});
+}
+
+std::vector<VkDescriptorSet> Scene::make_material_sets(const Device& device, const Layouts& layouts,
+                                                       const Document& document) {
+    const auto set_count = static_cast<std::uint32_t>(document.materials.size());
+    descriptor_pool_ = make_descriptor_pool(device, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                            5 * set_count, set_count);
+    std::vector<VkDescriptorSet> sets;
+    for (const MaterialRecord& material : document.materials) {
+        const VkDescriptorSet set = allocate_set(device, descriptor_pool_.get(),
+                                                 layouts.material_set(shading_of(material)));
+        write_material_set(device, set, material);
+        sets.push_back(set);
+    }
+    return sets;
+}
+
+void Scene::write_material_set(const Device& device, VkDescriptorSet set,
+                               const MaterialRecord& material) const {
+    const std::array<std::pair<std::uint32_t, std::uint32_t>, 5> bindings{
+        {{interop::kBaseColorBinding, material.base_color_texture},
+         {interop::kRoughnessBinding, material.roughness_texture},
+         {interop::kMetalnessBinding, material.metalness_texture},
+         {interop::kNormalMapBinding, material.normal_texture},
+         {interop::kAlphaMaskBinding, material.alpha_mask_texture}}};
+    const std::size_t count = shading_of(material) == Shading::opaque ? 4 : 5;
+    std::array<VkDescriptorImageInfo, 5> images;
+    std::array<VkWriteDescriptorSet, 5> writes;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto [binding, index] = bindings[i];
+        const Texture& texture =
+            index == mesh_format::kNoTexture ? textures_.back() : textures_[index];
+        images[i] = {texture.clamp ? clamp_.get() : repeat_.get(), texture.view.get(),
+                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                     .dstSet = set,
+                     .dstBinding = binding,
+                     .descriptorCount = 1,
+                     .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                     .pImageInfo = &images[i]};
+    }
+    vkUpdateDescriptorSets(device.get(), static_cast<std::uint32_t>(count), writes.data(), 0,
+                           nullptr);
+}
+
+VkDeviceSize Scene::memory_bytes() const {
+    VkDeviceSize bytes = vertices_.memory.bytes() + indices_.memory.bytes();
+    for (const Memory& memory : texture_memory_) bytes += memory.bytes();
+    return bytes;
+}
+
+std::uint64_t Scene::triangle_count() const {
+    std::uint64_t count = 0;
+    for (const SceneChunk& chunk : chunks_) count += chunk.index_count / 3;
+    return count;
+}
+
+common::MappedFile open_scene(const std::filesystem::path& path) {
+    common::MappedFile file(path);
+    const std::optional<common::FileKind> kind = common::file_kind(path);
+    if (kind == common::FileKind::obj || kind == common::FileKind::gltf) {
+        const std::string baked = std::filesystem::path(path).replace_extension("cw2mesh").string();
+        throw common::FileError(fmt::format(
+            "{0}: is a source file; bake it first: cw2-bake '{0}' -o '{1}'", path.string(), baked));
+    }
+    return file;
+}
+
+namespace {
+
+Scene scene_of(const Device& device, const Layouts& layouts, std::span<const std::byte> bytes,
+               const std::string& name, const TextureSettings& settings) {
+    Document document = mesh_format::parse(bytes, name);
+    const mesh_format::DecodedGeometry decoded = decode(document, name);
+    return {device, layouts, document, settings};
+}
+
+}  // namespace
+
+Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
+                 const TextureSettings& settings) {
+    const common::MappedFile file = open_scene(path);
+    return scene_of(device, layouts, file.bytes(), path.string(), settings);
+}
+
+Scene reload_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
+                   const TextureSettings& settings) {
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    const auto size = static_cast<std::streamoff>(file.tellg());
+    std::vector<std::byte> bytes(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)));
+    file.seekg(0);
+    if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) {
+        throw common::FileError(fmt::format("{}: cannot be read", path.string()));
+    }
+    return scene_of(device, layouts, bytes, path.string(), settings);
+}
+
+}  // namespace cw2

@@ -1,0 +1,109 @@
+// A baked scene on the device.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/io.h"
+#include "cw2/render/camera.h"
+#include "cw2/render/pipelines.h"
+#include "cw2/vulkan/device.h"
+#include "cw2/vulkan/handle.h"
+#include "cw2/vulkan/resources.h"
+#include "mesh-format/file.h"
+#include "shaders/interop.h"
+
+namespace cw2 {
+
+/// What the triangles of one mesh are drawn with.
+struct Draw {
+    interop::DrawConstants constants;
+    VertexForms forms;
+    Shading shading;
+    bool cull_back;
+    VkDescriptorSet material;
+    VkDeviceSize vertex_offset;  ///< bytes
+    VkDeviceSize index_offset;   ///< bytes
+};
+
+/// Triangles that are culled and drawn as one; see mesh_format::ChunkRecord.
+struct SceneChunk {
+    glm::vec3 center;
+    float radius;
+    glm::vec3 cone_axis;
+    float cone_cutoff;
+    std::uint32_t draw;         ///< index into Scene::draws
+    std::uint32_t first_index;  ///< counted from the draw's index_offset
+    std::uint32_t index_count;
+};
+
+/// How textures are kept and sampled.
+struct TextureSettings {
+    float anisotropy = 1.0f;     ///< the samplers' largest ratio, 1 for none
+    bool decode_blocks = false;  ///< what is stored in blocks becomes single texels
+};
+
+class Scene {
+ public:
+    /// Uploads `document`, which is not needed afterwards. Throws VulkanError.
+    Scene(const Device& device, const Layouts& layouts, const mesh_format::Document& document,
+          const TextureSettings& settings);
+
+    const Bounds& bounds() const { return bounds_; }
+    const SceneStart& start() const { return start_; }
+    const std::vector<Draw>& draws() const { return draws_; }
+    const std::vector<SceneChunk>& chunks() const { return chunks_; }
+    VkBuffer vertices() const { return vertices_.handle.get(); }
+    VkBuffer indices() const { return indices_.handle.get(); }
+    /// Indexed by DrawConstants::material.
+    const std::vector<std::string>& material_names() const { return material_names_; }
+    std::uint64_t triangle_count() const;
+    /// Device memory that geometry and textures take.
+    VkDeviceSize memory_bytes() const;
+
+ private:
+    struct Texture {
+        ImageHandle image;
+        ImageView view;
+        bool clamp;
+    };
+
+    void upload_textures(const Device& device, const mesh_format::Document& document,
+                         bool decode_blocks, Uploader& uploader);
+    std::vector<VkDescriptorSet> make_material_sets(const Device& device, const Layouts& layouts,
+                                                    const mesh_format::Document& document);
+    void write_material_set(const Device& device, VkDescriptorSet set,
+                            const mesh_format::MaterialRecord& material) const;
+
+    Bounds bounds_;
+    SceneStart start_;
+    Buffer vertices_;
+    Buffer indices_;
+    std::vector<Memory> texture_memory_;
+    std::vector<Texture> textures_;  ///< the document's, then a white texel for what is absent
+    Sampler repeat_;
+    Sampler clamp_;
+    DescriptorPool descriptor_pool_;
+    std::vector<std::string> material_names_;
+    std::vector<Draw> draws_;
+    std::vector<SceneChunk> chunks_;
+};
+
+/// Maps a scene file. Throws common::FileError, for a source format with the command that
+/// bakes it.
+common::MappedFile open_scene(const std::filesystem::path& path);
+
+/// Reads, checks and uploads a .cw2mesh file. Throws common::FileError or VulkanError.
+Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
+                 const TextureSettings& settings);
+
+/// The same for a file that somebody may be writing: mapped bytes that are cut off would end the
+/// process, so these are read.
+Scene reload_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
+                   const TextureSettings& settings);
+
+}  // namespace cw2

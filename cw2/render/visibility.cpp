@@ -1,0 +1,55 @@
+#include "cw2/render/visibility.h"
+
+#include <algorithm>
+#include <array>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_access.hpp>
+#include <tuple>
+
+namespace cw2 {
+
+namespace {
+
+/// Left, right, bottom, top and near plane, pointing inwards, normalised: a point's distance from
+/// a plane is dot(plane, (point, 1)). Gribb and Hartmann 2001.
+std::array<glm::vec4, 5> frustum_planes(const glm::mat4& clip_from_world) {
+    const glm::vec4 x = glm::row(clip_from_world, 0);
+    const glm::vec4 y = glm::row(clip_from_world, 1);
+    const glm::vec4 z = glm::row(clip_from_world, 2);
+    const glm::vec4 w = glm::row(clip_from_world, 3);
+    // Reversed depth: the near plane is z = w.
+    std::array planes{w + x, w - x, w + y, w - y, w - z};
+    for (glm::vec4& plane : planes) plane /= glm::length(glm::vec3(plane));
+    return planes;
+}
+
+bool faces_away(const SceneChunk& chunk, const glm::vec3& camera_position) {
+    const glm::vec3 to_center = chunk.center - camera_position;
+    return glm::dot(to_center, chunk.cone_axis) >=
+           chunk.cone_cutoff * glm::length(to_center) + chunk.radius;
+}
+
+}  // namespace
+
+void find_visible(std::span<const SceneChunk> chunks, std::span<const Draw> draws,
+                  const glm::mat4& clip_from_world, const glm::vec3& camera_position,
+                  std::vector<std::uint32_t>& visible) {
+    using Rank = std::tuple<Shading, float, std::uint32_t>;
+    const std::array<glm::vec4, 5> planes = frustum_planes(clip_from_world);
+    std::vector<Rank> ranks;
+    for (std::uint32_t i = 0; i < chunks.size(); ++i) {
+        const SceneChunk& chunk = chunks[i];
+        const Draw& draw = draws[chunk.draw];
+        const bool outside = std::any_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
+            return glm::dot(glm::vec3(plane), chunk.center) + plane.w < -chunk.radius;
+        });
+        if (outside || (draw.cull_back && faces_away(chunk, camera_position))) continue;
+        ranks.emplace_back(draw.shading,
+                           glm::distance(chunk.center, camera_position) - chunk.radius, i);
+    }
+    std::sort(ranks.begin(), ranks.end());
+    visible.clear();
+    for (const Rank& rank : ranks) visible.push_back(std::get<2>(rank));
+}
+
+}  // namespace cw2

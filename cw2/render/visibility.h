@@ -1,0 +1,21 @@
+// Which chunks of a scene a camera may see, and in which order to draw them.
+#pragma once
+
+#include <cstdint>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "cw2/render/scene.h"
+
+namespace cw2 {
+
+/// Writes to `visible` the indices of the chunks whose spheres meet the frustum and, where back
+/// faces are culled, whose normal cones do not all look away: opaque chunks before alpha-masked
+/// ones, each from near to far, which spares shading what is hidden.
+void find_visible(std::span<const SceneChunk> chunks, std::span<const Draw> draws,
+                  const glm::mat4& clip_from_world, const glm::vec3& camera_position,
+                  std::vector<std::uint32_t>& visible);
+
+}  // namespace cw2

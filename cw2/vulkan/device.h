@@ -1,0 +1,78 @@
+// The Vulkan instance and device.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cw2/vulkan/handle.h"
+
+namespace cw2 {
+
+/// What Vulkan cannot do here; what() is one line that names the device or the call, and the cause.
+class VulkanError : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Throws VulkanError naming `call` unless `result` is VK_SUCCESS.
+void check(VkResult result, const char* call);
+
+/// The instance; with validation on, every message of the validation layers (synchronisation
+/// validation included) is printed to standard error and counted.
+class Instance {
+ public:
+    /// `extensions` are those that presenting to a window needs. Throws VulkanError where there is
+    /// no driver, or no validation layer though `validation` asks for it.
+    Instance(bool validation, const std::vector<const char*>& extensions);
+
+    VkInstance get() const { return instance_.get(); }
+    /// Warnings and errors of the validation layers so far.
+    int validation_messages() const { return *message_count_; }
+
+ private:
+    std::unique_ptr<int> message_count_ = std::make_unique<int>(0);
+    InstanceHandle instance_;
+    DebugMessenger messenger_;
+};
+
+/// A line for each physical device: index, name, kind, Vulkan version, and whether cw2 can use it.
+std::vector<std::string> describe_devices(const Instance& instance);
+
+/// A device with one queue for graphics and transfer.
+class Device {
+ public:
+    /// Picks a physical device that has what cw2 needs: by `selector` (an index of
+    /// describe_devices, or a part of a name in any case), else a discrete GPU before an integrated
+    /// one before a virtual one before a CPU. With a `surface` its queue can present there.
+    /// Throws VulkanError where there is none.
+    Device(const Instance& instance, const std::optional<std::string>& selector,
+           VkSurfaceKHR surface = VK_NULL_HANDLE);
+
+    VkDevice get() const { return device_.get(); }
+    VkPhysicalDevice physical() const { return physical_; }
+    VkQueue queue() const { return queue_; }
+    std::uint32_t queue_family() const { return queue_family_; }
+    const VkPhysicalDeviceProperties& properties() const { return properties_; }
+    /// Whether images may be in the formats BC1 to BC5.
+    bool samples_blocks() const { return samples_blocks_; }
+    bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+
+    /// The index of a memory type among `type_bits` that has `flags`, or else throws VulkanError.
+    std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags flags) const;
+
+ private:
+    VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+    VkPhysicalDeviceProperties properties_{};
+    VkPhysicalDeviceMemoryProperties memory_{};
+    std::uint32_t queue_family_ = 0;
+    bool samples_blocks_ = false;
+    LogicalDevice device_;
+    VkQueue queue_ = VK_NULL_HANDLE;
+};
+
+}  // namespace cw2

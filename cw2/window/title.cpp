@@ -1,0 +1,35 @@
+#include "cw2/window/title.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "cw2/render/view.h"
+
+namespace cw2 {
+
+namespace {
+
+/// How often the time is written anew.
+constexpr std::chrono::milliseconds kPause{250};
+
+}  // namespace
+
+Title::Title(Window& window, std::string scene) : window_(window), scene_(std::move(scene)) {}
+
+void Title::set_error(std::string error) {
+    error_ = std::move(error);
+}
+
+void Title::update(const FrameSettings& settings, std::optional<double> milliseconds) {
+    std::string words = fmt::format("{} - {}", scene_, kViewNames[settings.view]);
+    if (settings.split) words += fmt::format(" | {}", kViewNames[settings.split->right.view]);
+    if (!error_.empty()) words = error_ + " - " + words;
+    const auto now = std::chrono::steady_clock::now();
+    if (words == words_ && now - written_ < kPause) return;
+    window_.set_title(milliseconds ? fmt::format("{} - {:.1f} ms", words, *milliseconds) : words);
+    words_ = std::move(words);
+    written_ = now;
+}
+
+}  // namespace cw2

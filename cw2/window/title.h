@@ -1,0 +1,33 @@
+// The window's title.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "cw2/render/renderer.h"
+#include "cw2/window/window.h"
+
+namespace cw2 {
+
+/// Says the scene, the view and the time of a frame, after an error if there is one.
+class Title {
+ public:
+    /// `window` must outlive this.
+    Title(Window& window, std::string scene);
+
+    /// Empty for none.
+    void set_error(std::string error);
+
+    /// What is new shows at once, but the time every now and then only.
+    void update(const FrameSettings& settings, std::optional<double> milliseconds);
+
+ private:
+    Window& window_;
+    std::string scene_;
+    std::string error_;
+    std::string words_;  ///< shown, but for the time
+    std::chrono::steady_clock::time_point written_;
+};
+
+}  // namespace cw2
