@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "common/lfs_pointer.h"
+
 namespace common {
 
 namespace {
@@ -69,6 +71,10 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     void* const address = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
     if (address == MAP_FAILED) fail_errno(path, "cannot be mapped");
     bytes_ = {static_cast<const std::byte*>(address), size};
+    if (is_lfs_pointer(bytes_)) {
+        ::munmap(address, size);
+        fail(path, std::string(kIsLfsPointer));
+    }
 }
 
 MappedFile::~MappedFile() {

@@ -22,7 +22,8 @@ std::string one_line(std::string_view text);
 /// A file mapped read-only, unmapped when destroyed.
 class MappedFile {
  public:
-    /// Throws FileError if `path` is missing, is not a regular file, or cannot be read.
+    /// Throws FileError if `path` is missing, is not a regular file, cannot be read, or is a Git
+    /// LFS pointer.
     explicit MappedFile(const std::filesystem::path& path);
     ~MappedFile();
     MappedFile(const MappedFile&) = delete;

@@ -8,10 +8,12 @@
 #include <cerrno>
 #include <cstring>
 #include <new>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "common/io.h"
+#include "common/lfs_pointer.h"
 #include "cw2-bake/textures/read_common_image.h"
 
 namespace bake {
@@ -114,14 +116,17 @@ Image read_image(const std::filesystem::path& path) {
     try {
         const common::MappedFile file(path);
         if (auto image = read_common(file.bytes())) return std::move(*image);
-    } catch (const common::FileError&) {
-        // Whoever reads it next says what is wrong with it.
+    } catch (const common::FileError& error) {
+        const std::string prefix = path.string() + ": ";
+        const std::string_view line = error.what();
+        throw ImageError(std::string(line.substr(line.starts_with(prefix) ? prefix.size() : 0)));
     }
     return read_regular_file(path);
 }
 
 Image read_image(std::span<const std::byte> contents) {
     if (contents.empty()) throw ImageError("is empty");
+    if (common::is_lfs_pointer(contents)) throw ImageError(std::string(common::kIsLfsPointer));
     if (auto image = read_common(contents)) return std::move(*image);
     // Not every decoder of OpenImageIO reads from memory; all read files.
     return read_regular_file(MemoryFile(contents).path());

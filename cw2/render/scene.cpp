@@ -9,6 +9,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "common/file_kind.h"
+#include "common/lfs_pointer.h"
 #include "cw2/render/decode_textures.h"
 #include "mesh-format/blocks.h"
 #include "mesh-format/decode.h"
@@ -323,6 +324,9 @@ Scene reload_scene(const Device& device, const Layouts& layouts, const std::file
     file.seekg(0);
     if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) {
         throw common::FileError(fmt::format("{}: cannot be read", path.string()));
+    }
+    if (common::is_lfs_pointer(bytes)) {
+        throw common::FileError(fmt::format("{}: {}", path.string(), common::kIsLfsPointer));
     }
     return scene_of(device, layouts, bytes, path.string(), settings);
 }

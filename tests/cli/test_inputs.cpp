@@ -86,4 +86,36 @@ TEST_F(Inputs, AnOutputThatIsAnInputIsRefused) {
     EXPECT_EQ(twice.err, "cw2-bake: out.cw2mesh: is named for two outputs\n");
 }
 
+TEST_F(Inputs, GitLfsPointersAreCalledThatWhereverTheyStand) {
+    const std::string pointer =
+        "version https://git-lfs.github.com/spec/v1\noid sha256:" + std::string(64, '0') +
+        "\nsize 123456\n";
+    const std::string what = "is a Git LFS pointer, not the file; git lfs pull fetches it\n";
+    for (const char* name : {"a.obj", "a.gltf", "a.glb", "a.cw2mesh"}) write(name, pointer);
+    for (const char* name : {"a.obj", "a.gltf", "a.glb"}) {
+        const Outcome outcome = bake({name, "-o", "out.cw2mesh"});
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_EQ(outcome.err, std::string("cw2-bake: ") + name + ": " + what);
+    }
+    EXPECT_EQ(bake({"--inspect", "a.cw2mesh"}).err, "cw2-bake: a.cw2mesh: " + what);
+    EXPECT_EQ(bake({"a.cw2mesh", "-o", "a2.glb"}).err, "cw2-bake: a.cw2mesh: " + what);
+    const Outcome drawn = run({CW2_PROGRAM, here("a.cw2mesh"), "--output", here("a.png")});
+    EXPECT_EQ(drawn.status, 1);
+    EXPECT_EQ(drawn.err, "cw2: " + here("a.cw2mesh").string() + ": " + what);
+
+    GltfWriter gltf = square_gltf();
+    gltf.write_gltf(here("square.gltf"));
+    write("square.bin", pointer);
+    EXPECT_EQ(bake({"square.gltf"}).err, "cw2-bake: square.gltf: /buffers/0: square.bin: " + what);
+
+    write("colors.png", pointer);
+    write("mask.png", pointer);
+    EXPECT_EQ(bake({"scene.obj", "-o", "out.cw2mesh"}).err,
+              "cw2-bake: warning: scene.mtl:3: colors.png: " + what +
+                  "cw2-bake: warning: scene.mtl:9: mask.png: " + what);
+    write("scene.mtl", pointer);
+    EXPECT_EQ(bake({"scene.obj", "-o", "out.cw2mesh"}).err,
+              "cw2-bake: warning: scene.obj:1: scene.mtl: " + what);
+}
+
 }  // namespace
