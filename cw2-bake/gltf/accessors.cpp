@@ -130,10 +130,9 @@ std::vector<std::byte> GltfAccessors::packed_elements(int index) const {
     return elements;
 }
 
-const std::vector<float>& GltfAccessors::floats(int index, int wanted_components) {
+std::vector<float> GltfAccessors::read_floats(int index, int wanted_components, NotFinite rule) {
     if (components(index) != wanted_components)
         fail(index, fmt::format("has not {} components, as its use asks", wanted_components));
-    if (const auto known = floats_.find(index); known != floats_.end()) return known->second;
     const auto& accessor = at(index);
     const std::vector<std::byte> elements = packed_elements(index);
     std::vector<float> floats = with_component_type(accessor.componentType, [&](auto zero) {
@@ -145,13 +144,40 @@ const std::vector<float>& GltfAccessors::floats(int index, int wanted_components
         }
         return result;
     });
+    const auto stride = static_cast<std::size_t>(wanted_components);
+    std::size_t not_finite = 0;
     for (std::size_t i = 0; i < floats.size(); ++i) {
-        if (!std::isfinite(floats[i])) {
-            fail(index, fmt::format("element {} is not finite",
-                                    i / static_cast<std::size_t>(wanted_components)));
-        }
+        if (std::isfinite(floats[i])) continue;
+        const std::size_t element = i / stride;
+        if (rule == NotFinite::is_error)
+            fail(index, fmt::format("element {} is not finite", element));
+        ++not_finite;
+        std::fill_n(floats.begin() + static_cast<std::ptrdiff_t>(element * stride), stride, 0.0f);
     }
-    return floats_.emplace(index, std::move(floats)).first->second;
+    if (not_finite > 0 && not_finite_.insert(index).second) {
+        warn_(fmt::format("{}: /accessors/{}: {} of its elements are not finite, and left out",
+                          file_.path.string(), index, not_finite));
+    }
+    return floats;
+}
+
+const std::vector<float>& GltfAccessors::cached(int index, int wanted_components, NotFinite rule) {
+    const auto known = floats_.find(index);
+    if (known != floats_.end() && components(index) == wanted_components) return known->second;
+    return floats_.insert_or_assign(index, read_floats(index, wanted_components, rule))
+        .first->second;
+}
+
+const std::vector<float>& GltfAccessors::floats(int index, int wanted_components) {
+    return cached(index, wanted_components, NotFinite::is_error);
+}
+
+const std::vector<float>& GltfAccessors::optional_floats(int index, int wanted_components) {
+    return cached(index, wanted_components, NotFinite::is_zero);
+}
+
+std::vector<float> GltfAccessors::take_floats(int index, int wanted_components) {
+    return read_floats(index, wanted_components, NotFinite::is_error);
 }
 
 std::vector<std::uint32_t> GltfAccessors::indices(int index) const {

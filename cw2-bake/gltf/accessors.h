@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,12 +13,12 @@
 
 namespace bake {
 
-/// Reads accessors of a file, which must outlive this. What does not fit together (an accessor
-/// that reaches past its buffer view, a wrong type) throws BakeError with the accessor's JSON
-/// pointer.
+/// Reads accessors of a file; it and `warn` must outlive this. What does not fit together (an
+/// accessor that reaches past its buffer view, a wrong type) throws BakeError with the accessor's
+/// JSON pointer.
 class GltfAccessors {
  public:
-    explicit GltfAccessors(const GltfFile& file) : file_(file) {}
+    GltfAccessors(const GltfFile& file, const Warn& warn) : file_(file), warn_(warn) {}
 
     std::size_t count(int accessor) const { return at(accessor).count; }
     int components(int accessor) const;
@@ -26,6 +27,13 @@ class GltfAccessors {
     /// accessor must have `components` an element. Valid until keep_only().
     const std::vector<float>& floats(int accessor, int components);
 
+    /// The same of what a scene can do without: elements that are not finite become zeros, with a
+    /// warning.
+    const std::vector<float>& optional_floats(int accessor, int components);
+
+    /// What floats() gives, which is forgotten at once.
+    std::vector<float> take_floats(int accessor, int components);
+
     /// Scalars of an unsigned type.
     std::vector<std::uint32_t> indices(int accessor) const;
 
@@ -33,11 +41,15 @@ class GltfAccessors {
     /// claim more elements in all than memory holds.
     void keep_only(std::span<const int> accessors);
 
+    [[noreturn]] void fail(int accessor, const std::string& what) const;
+
  private:
+    enum class NotFinite : std::uint8_t { is_error, is_zero };
+    const std::vector<float>& cached(int accessor, int components, NotFinite rule);
+    std::vector<float> read_floats(int accessor, int components, NotFinite rule);
     const tinygltf::Accessor& at(int accessor) const {
         return file_.model.accessors[static_cast<std::size_t>(accessor)];
     }
-    [[noreturn]] void fail(int accessor, const std::string& what) const;
     std::vector<std::byte> packed_elements(int accessor) const;
     std::vector<std::byte> view_elements(int accessor, int view, std::size_t offset,
                                          std::size_t count, std::size_t element_bytes,
@@ -46,7 +58,9 @@ class GltfAccessors {
                       std::vector<std::byte>& elements) const;
 
     const GltfFile& file_;
+    const Warn& warn_;
     std::map<int, std::vector<float>> floats_;
+    std::set<int> not_finite_;  ///< accessors of which a warning told
 };
 
 }  // namespace bake

@@ -9,6 +9,7 @@
 
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/gltf/json.h"
+#include "cw2-bake/gltf/unread.h"
 
 namespace bake {
 namespace {
@@ -172,22 +173,27 @@ class Loader {
         }
     }
 
-    /// What the bake has no use for.
-    void remove_what_is_left_out() {
-        const auto leave_out = [&](const char* what) {
-            if (!file_.left_out.empty()) file_.left_out += ", ";
-            file_.left_out += what;
-        };
-        for (const char* name : {"skins", "animations"})
-            if (root_.erase(name) > 0) leave_out(name);
-        bool morphs = false;
-        for (json& mesh : array("meshes")) {
-            mesh.erase("weights");
-            for (json& primitive : mesh["primitives"]) morphs |= primitive.erase("targets") > 0;
+    /// What tinygltf must not see. It also asks that indices have a buffer view, unlike glTF: those
+    /// without one get one beyond all others; and that spot lights have a cone, which is not used.
+    void prepare_for_tinygltf() {
+        for (const char* name : {"animations", "buffers", "images"}) root_.erase(name);
+        const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
+        if (root_.contains(lights)) {
+            for (json& light : root_[lights])
+                if (light["type"] == "spot") light["spot"] = json::object();
         }
-        if (morphs) leave_out("morph targets");
-        root_.erase("buffers");
-        root_.erase("images");
+        const std::size_t beyond = array("bufferViews").size();
+        bool any = false;
+        for (const json& mesh : array("meshes")) {
+            for (const json& primitive : mesh["primitives"]) {
+                const auto indices = primitive.find("indices");
+                if (indices == primitive.end()) continue;
+                any |= array("accessors")[indices->get<std::size_t>()]
+                           .emplace("bufferView", beyond)
+                           .second;
+            }
+        }
+        if (any) root_["bufferViews"].push_back({{"buffer", 0}, {"byteLength", 1}});
     }
 
  private:
@@ -266,7 +272,10 @@ GltfFile load_gltf(const std::filesystem::path& path) {
     Loader loader(file, root, chunks.binary);
     loader.load_buffers();
     loader.find_images();
-    loader.remove_what_is_left_out();
+    file.unread = find_unread(root);
+    const auto views = root.find("bufferViews");
+    const std::size_t view_count = views == root.end() ? 0 : views->size();
+    loader.prepare_for_tinygltf();
 
     const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
     std::string error, warning;
@@ -276,6 +285,10 @@ GltfFile load_gltf(const std::filesystem::path& path) {
         std::ranges::replace(error, '\n', ' ');
         throw BakeError(fmt::format("{}: {}", path.string(), trimmed(error)));
     }
+    // The view that indices without one were given.
+    file.model.bufferViews.resize(view_count);
+    for (auto& accessor : file.model.accessors)
+        if (accessor.bufferView >= static_cast<int>(view_count)) accessor.bufferView = -1;
     return file;
 }
 

@@ -27,14 +27,14 @@ struct GltfImage {
 /// past the end of a .glb, follows indices unchecked, ends the program on a buffer of no bytes,
 /// asks that a buffer's file be no longer than the buffer, searches the working directory, reads a
 /// plus sign in a file's name as a blank, and holds every byte twice. So it is given JSON that has
-/// been checked, without buffers, images, skins, animations and morph targets.
+/// been checked, without buffers, images and animations.
 struct GltfFile {
     std::filesystem::path path;
     tinygltf::Model model;
     std::vector<std::span<const std::byte>> buffers;
     std::vector<GltfImage> images;
     std::vector<std::filesystem::path> buffer_files;  ///< that were read
-    std::string left_out;  ///< "skins, animations" and the like; empty if nothing was
+    std::vector<std::string> unread;                  ///< what find_unread() says
 
     /// What the spans point into.
     std::list<common::MappedFile> mapped;

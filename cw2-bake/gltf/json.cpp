@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 #include "cw2-bake/base/text_lines.h"
+#include "cw2-bake/gltf/schema.h"
 
 namespace bake {
 namespace {
@@ -19,136 +21,8 @@ constexpr std::int64_t kLargestCount = std::int64_t{1} << 40;
 constexpr std::int64_t kLargestInt = 0x7FFF'FFFF;
 constexpr int kDeepest = 64;
 
-enum class Kind : std::uint8_t {
-    index,    ///< into the top-level array `target`
-    count,    ///< 0 .. kLargestCount
-    small,    ///< 0 .. kLargestInt: where tinygltf has an int, and cuts off what does not fit
-    number,   ///< finite
-    numbers,  ///< an array of `length` numbers
-    boolean,
-    text,
-    object,   ///< of `members`
-    objects,  ///< an array of such
-    indices,  ///< an array of indices
-    lookup,   ///< an object whose members are indices
-    texts,    ///< an array of texts
-};
-
-struct Member {
-    const char* name;
-    Kind kind;
-    bool required = false;
-    const char* target = nullptr;
-    std::size_t length = 0;
-    std::span<const Member> members{};
-};
-
-constexpr bool kRequired = true;
-
-// The parts of the schema of glTF 2.0 that the reader looks at (Khronos, glTF 2.0 specification,
-// appendix "JSON Schema Reference"), and of three extensions.
-constexpr Member kAsset[] = {{"version", Kind::text, kRequired}};
-constexpr Member kSparseIndices[] = {{"bufferView", Kind::index, kRequired, "bufferViews"},
-                                     {"byteOffset", Kind::small},
-                                     {"componentType", Kind::small, kRequired}};
-constexpr Member kSparseValues[] = {{"bufferView", Kind::index, kRequired, "bufferViews"},
-                                    {"byteOffset", Kind::small}};
-constexpr Member kSparse[] = {{"count", Kind::small, kRequired},
-                              {"indices", Kind::object, kRequired, {}, 0, kSparseIndices},
-                              {"values", Kind::object, kRequired, {}, 0, kSparseValues}};
-constexpr Member kAccessor[] = {{"bufferView", Kind::index, false, "bufferViews"},
-                                {"byteOffset", Kind::count},
-                                {"componentType", Kind::small, kRequired},
-                                {"normalized", Kind::boolean},
-                                {"count", Kind::count, kRequired},
-                                {"type", Kind::text, kRequired},
-                                {"sparse", Kind::object, false, {}, 0, kSparse}};
-constexpr Member kBuffer[] = {{"byteLength", Kind::count, kRequired}, {"uri", Kind::text}};
-constexpr Member kBufferView[] = {{"buffer", Kind::index, kRequired, "buffers"},
-                                  {"byteOffset", Kind::count},
-                                  {"byteLength", Kind::count, kRequired},
-                                  {"byteStride", Kind::count}};
-constexpr Member kPrimitive[] = {{"attributes", Kind::lookup, kRequired, "accessors"},
-                                 {"indices", Kind::index, false, "accessors"},
-                                 {"material", Kind::index, false, "materials"},
-                                 {"mode", Kind::small}};
-constexpr Member kMesh[] = {{"name", Kind::text},
-                            {"primitives", Kind::objects, kRequired, {}, 0, kPrimitive}};
-constexpr Member kNodeLight[] = {{"light", Kind::small, kRequired}};
-constexpr Member kNodeExtensions[] = {
-    {"KHR_lights_punctual", Kind::object, false, {}, 0, kNodeLight}};
-constexpr Member kNode[] = {{"name", Kind::text},
-                            {"camera", Kind::index, false, "cameras"},
-                            {"children", Kind::indices, false, "nodes"},
-                            {"matrix", Kind::numbers, false, {}, 16},
-                            {"mesh", Kind::index, false, "meshes"},
-                            {"rotation", Kind::numbers, false, {}, 4},
-                            {"scale", Kind::numbers, false, {}, 3},
-                            {"translation", Kind::numbers, false, {}, 3},
-                            {"extensions", Kind::object, false, {}, 0, kNodeExtensions}};
-constexpr Member kTransform[] = {{"offset", Kind::numbers, false, {}, 2},
-                                 {"rotation", Kind::number},
-                                 {"scale", Kind::numbers, false, {}, 2},
-                                 {"texCoord", Kind::small}};
-constexpr Member kTextureInfoExtensions[] = {
-    {"KHR_texture_transform", Kind::object, false, {}, 0, kTransform}};
-constexpr Member kTextureInfo[] = {
-    {"index", Kind::index, kRequired, "textures"},
-    {"texCoord", Kind::small},
-    {"scale", Kind::number},
-    {"extensions", Kind::object, false, {}, 0, kTextureInfoExtensions}};
-constexpr Member kSurface[] = {
-    {"baseColorFactor", Kind::numbers, false, {}, 4},
-    {"baseColorTexture", Kind::object, false, {}, 0, kTextureInfo},
-    {"metallicFactor", Kind::number},
-    {"roughnessFactor", Kind::number},
-    {"metallicRoughnessTexture", Kind::object, false, {}, 0, kTextureInfo}};
-constexpr Member kMaterial[] = {{"name", Kind::text},
-                                {"pbrMetallicRoughness", Kind::object, false, {}, 0, kSurface},
-                                {"normalTexture", Kind::object, false, {}, 0, kTextureInfo},
-                                {"alphaMode", Kind::text},
-                                {"alphaCutoff", Kind::number},
-                                {"emissiveFactor", Kind::numbers, false, {}, 3},
-                                {"doubleSided", Kind::boolean}};
-constexpr Member kSampler[] = {{"wrapS", Kind::small}, {"wrapT", Kind::small}};
-constexpr Member kWebp[] = {{"source", Kind::index, false, "images"}};
-constexpr Member kTextureExtensions[] = {{"EXT_texture_webp", Kind::object, false, {}, 0, kWebp}};
-constexpr Member kTexture[] = {{"sampler", Kind::index, false, "samplers"},
-                               {"source", Kind::index, false, "images"},
-                               {"extensions", Kind::object, false, {}, 0, kTextureExtensions}};
-constexpr Member kImage[] = {
-    {"name", Kind::text}, {"uri", Kind::text}, {"bufferView", Kind::index, false, "bufferViews"}};
-constexpr Member kPerspective[] = {{"yfov", Kind::number, kRequired},
-                                   {"znear", Kind::number, kRequired}};
-constexpr Member kOrthographic[] = {{"xmag", Kind::number, kRequired},
-                                    {"ymag", Kind::number, kRequired},
-                                    {"zfar", Kind::number, kRequired},
-                                    {"znear", Kind::number, kRequired}};
-constexpr Member kCamera[] = {{"type", Kind::text, kRequired},
-                              {"perspective", Kind::object, false, {}, 0, kPerspective},
-                              {"orthographic", Kind::object, false, {}, 0, kOrthographic}};
-constexpr Member kScene[] = {{"nodes", Kind::indices, false, "nodes"}};
-constexpr Member kLight[] = {{"type", Kind::text, kRequired},
-                             {"color", Kind::numbers, false, {}, 3},
-                             {"intensity", Kind::number}};
-constexpr Member kLights[] = {{"lights", Kind::objects, false, {}, 0, kLight}};
-constexpr Member kExtensions[] = {{"KHR_lights_punctual", Kind::object, false, {}, 0, kLights}};
-constexpr Member kRoot[] = {{"asset", Kind::object, kRequired, {}, 0, kAsset},
-                            {"accessors", Kind::objects, false, {}, 0, kAccessor},
-                            {"buffers", Kind::objects, false, {}, 0, kBuffer},
-                            {"bufferViews", Kind::objects, false, {}, 0, kBufferView},
-                            {"meshes", Kind::objects, false, {}, 0, kMesh},
-                            {"nodes", Kind::objects, false, {}, 0, kNode},
-                            {"materials", Kind::objects, false, {}, 0, kMaterial},
-                            {"textures", Kind::objects, false, {}, 0, kTexture},
-                            {"samplers", Kind::objects, false, {}, 0, kSampler},
-                            {"images", Kind::objects, false, {}, 0, kImage},
-                            {"cameras", Kind::objects, false, {}, 0, kCamera},
-                            {"scenes", Kind::objects, false, {}, 0, kScene},
-                            {"scene", Kind::index, false, "scenes"},
-                            {"extensionsUsed", Kind::texts},
-                            {"extensionsRequired", Kind::texts},
-                            {"extensions", Kind::object, false, {}, 0, kExtensions}};
+using Kind = JsonKind;
+using Member = JsonMember;
 
 constexpr std::string_view kKnownExtensions[] = {"KHR_texture_transform", "KHR_mesh_quantization",
                                                  "KHR_lights_punctual", "EXT_texture_webp"};
@@ -188,7 +62,7 @@ class Checker {
                 return check_number(value, pointer);
             case Kind::numbers:
                 elements(value, pointer, [&](json& e, const auto& at) { check_number(e, at); });
-                if (value.size() != member.length)
+                if (member.length > 0 && value.size() != member.length)
                     fail(pointer, fmt::format("is not of {} numbers", member.length));
                 return;
             case Kind::boolean:
@@ -210,11 +84,16 @@ class Checker {
                 return elements(value, pointer,
                                 [&](json& e, const auto& at) { check_index(e, member, at); });
             case Kind::lookup:
-                if (!value.is_object()) fail(pointer, "is no object");
-                for (auto& [key, index] : value.items())
-                    check_index(index, member, pointer + '/' + key);
-                return;
+                return check_lookup(value, member, pointer);
+            case Kind::lookups:
+                return elements(value, pointer,
+                                [&](json& e, const auto& at) { check_lookup(e, member, at); });
         }
+    }
+
+    void check_lookup(json& lookup, const Member& member, const std::string& pointer) const {
+        if (!lookup.is_object()) fail(pointer, "is no object");
+        for (auto& [key, index] : lookup.items()) check_index(index, member, pointer + '/' + key);
     }
 
     template <typename Check>
@@ -273,10 +152,61 @@ void check_depth(std::string_view text, const std::filesystem::path& path) {
     }
 }
 
-void check_versions(const json& root, const Checker& checker) {
-    const std::string& version = root["asset"]["version"].get_ref<const std::string&>();
-    if (version != "2" && !version.starts_with("2."))
-        checker.fail("/asset/version", fmt::format("is {}, not 2.0", in_quotes(version)));
+/// The first number of a JSON text that no double holds; empty if there is none.
+std::string_view find_huge_number(std::string_view text) {
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string && c == '\\') ++i;
+        if (c == '"') in_string = !in_string;
+        if (in_string || !(c == '-' || (c >= '0' && c <= '9'))) continue;
+        const std::size_t end = std::min(text.find_first_not_of("+-.0123456789eE", i), text.size());
+        const std::string_view number = text.substr(i, end - i);
+        if (std::isinf(std::strtod(std::string(number).c_str(), nullptr))) return number;
+        i = end - 1;
+    }
+    return {};
+}
+
+json parse_json(std::string_view text, const std::filesystem::path& path) {
+    std::size_t at = 0;
+    std::string problem;
+    try {
+        return json::parse(text);
+    } catch (const json::parse_error& error) {
+        at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
+        problem = "unexpected " + (at < text.size() ? in_quotes(text.substr(at, 1)) : "end");
+    } catch (const json::out_of_range&) {
+        const std::string_view number = find_huge_number(text);
+        at = number.empty() ? 0 : static_cast<std::size_t>(number.data() - text.data());
+        problem = fmt::format("the number {} is too large", number);
+    }
+    throw BakeError(
+        fmt::format("{}:{}: is no JSON: {}", path.string(), line_number(text, at), problem));
+}
+
+/// What it is at all comes first: all else of an older glTF looks malformed.
+void check_version(json& root, const Checker& checker) {
+    if (!root.is_object()) checker.fail("", "is no object");
+    const auto asset = root.find("asset");
+    const bool has_asset = asset != root.end() && asset->is_object();
+    const auto meshes = root.find("meshes");
+    // Version 1 may go without an asset, and has objects where version 2 has arrays.
+    if ((!has_asset || !asset->contains("version")) && meshes != root.end() && meshes->is_object())
+        checker.fail("/asset/version", "is missing, so this is glTF 1.0; only 2.0 is read");
+    if (!has_asset) checker.fail("", "has no asset");
+    const auto version = asset->find("version");
+    if (version == asset->end()) checker.fail("/asset", "has no version");
+    if (version->is_number()) *version = fmt::format("{:.1f}", version->get<double>());
+    if (!version->is_string()) checker.fail("/asset/version", "is no string");
+    const auto& text = version->get_ref<const std::string&>();
+    if (text == "2" || text.starts_with("2.")) return;
+    const bool is_version = !text.empty() && text.find_first_not_of("0123456789.") == text.npos;
+    checker.fail("/asset/version",
+                 fmt::format("is glTF {}; only 2.0 is read", is_version ? text : in_quotes(text)));
+}
+
+void check_required_extensions(const json& root, const Checker& checker) {
     const auto required = root.find("extensionsRequired");
     if (required == root.end()) return;
     for (std::size_t i = 0; i < required->size(); ++i) {
@@ -287,27 +217,8 @@ void check_versions(const json& root, const Checker& checker) {
     }
 }
 
-constexpr std::size_t kNone = ~std::size_t{0};
-
-/// A node that a scene showed twice would show all below it twice, and so on down: a small file
-/// would claim all memory.
-void check_scenes(const json& root, const std::vector<std::size_t>& parents,
-                  const Checker& checker) {
-    const auto scenes = root.find("scenes");
-    for (std::size_t i = 0; scenes != root.end() && i < scenes->size(); ++i) {
-        const json nodes = (*scenes)[i].value("nodes", json::array());
-        std::vector<bool> met(parents.size(), false);
-        for (std::size_t k = 0; k < nodes.size(); ++k) {
-            const auto node = nodes[k].get<std::size_t>();
-            const std::string pointer = fmt::format("/scenes/{}/nodes/{}", i, k);
-            if (parents[node] != kNone) checker.fail(pointer, "is a child of another node");
-            if (met[node]) checker.fail(pointer, fmt::format("is node {} again", node));
-            met[node] = true;
-        }
-    }
-}
-
 void check_hierarchy(const json& root, const Checker& checker) {
+    constexpr std::size_t kNone = ~std::size_t{0};
     const auto nodes = root.find("nodes");
     if (nodes == root.end()) return;
     std::vector<std::size_t> parents(nodes->size(), kNone);
@@ -334,7 +245,6 @@ void check_hierarchy(const json& root, const Checker& checker) {
         }
         for (node = i; node != kNone && !ends[node]; node = parents[node]) ends[node] = true;
     }
-    check_scenes(root, parents, checker);
 }
 
 /// What tinygltf refuses, or takes for something else, with a message that names no place.
@@ -355,6 +265,12 @@ void check_enumerations(const json& root, const Checker& checker) {
         if (std::ranges::find(kTypes, shape) == std::end(kTypes))
             checker.fail(pointer + "/type", fmt::format("is {}, which is none", in_quotes(shape)));
         if (accessor["count"] == 0) checker.fail(pointer + "/count", "is 0");
+    });
+    each("cameras", [&](const json& camera, const std::string& pointer) {
+        const auto& type = camera["type"].get_ref<const std::string&>();
+        if (type != "perspective" && type != "orthographic")
+            checker.fail(pointer + "/type", fmt::format("is {}, which is none", in_quotes(type)));
+        if (!camera.contains(type)) checker.fail(pointer, "has no " + type);
     });
     each("bufferViews", [&](const json& view, const std::string& pointer) {
         const auto stride = view.value("byteStride", std::int64_t{4});
@@ -378,18 +294,11 @@ void fail_at(const std::filesystem::path& path, std::string_view pointer, std::s
 
 json parse_gltf_json(std::string_view text, const std::filesystem::path& path) {
     check_depth(text, path);
-    json root;
-    try {
-        root = json::parse(text);
-    } catch (const json::parse_error& error) {
-        const std::size_t at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
-        throw BakeError(fmt::format("{}:{}: is no JSON: unexpected {}", path.string(),
-                                    line_number(text, at),
-                                    at < text.size() ? in_quotes(text.substr(at, 1)) : "end"));
-    }
+    json root = parse_json(text, path);
     Checker checker(root, path);
-    checker.check(root, kRoot, "");
-    check_versions(root, checker);
+    check_version(root, checker);
+    checker.check(root, gltf_schema(), "");
+    check_required_extensions(root, checker);
     check_enumerations(root, checker);
     check_hierarchy(root, checker);
     return root;

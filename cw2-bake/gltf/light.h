@@ -11,7 +11,7 @@ namespace bake {
 /// this distance. It is that of the scene's centre, but at least half the half diagonal of its box.
 inline double light_distance(const glm::dvec3& light, const glm::dvec3& center,
                              double half_diagonal) {
-    return std::max({glm::length(light - center), 0.5 * half_diagonal, 1e-6});
+    return std::max({glm::length(light - center), 0.5 * half_diagonal, 1e-30});
 }
 
 }  // namespace bake

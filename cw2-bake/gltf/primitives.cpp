@@ -7,10 +7,13 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <list>
+#include <optional>
 #include <utility>
 
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/gltf/json.h"
+#include "cw2-bake/gltf/pose.h"
 
 namespace bake {
 namespace {
@@ -37,6 +40,23 @@ glm::dmat3 normal_matrix(const glm::dmat3& m) {
 
 constexpr std::uint32_t kUnused = 0xFFFF'FFFF;
 
+/// What takes positions, normals and tangents into the world.
+struct Placement {
+    explicit Placement(const glm::dmat4& matrix)
+        : world_from_mesh(matrix),
+          of_normals(normal_matrix(glm::dmat3(matrix))),
+          mirrored(glm::determinant(glm::dmat3(matrix)) < 0.0) {}
+
+    glm::dmat4 world_from_mesh;
+    glm::dmat3 of_normals;
+    bool mirrored;
+};
+
+int attribute_of(const tinygltf::Primitive& primitive, const std::string& name) {
+    const auto found = primitive.attributes.find(name);
+    return found == primitive.attributes.end() ? -1 : found->second;
+}
+
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 3>> triangles_of(int mode,
@@ -58,21 +78,115 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(int mode,
     return triangles;
 }
 
-/// A primitive's vertices as the file has them; null where it has no such attribute.
+/// A primitive's vertices as the file has them, morph targets added; null where it has no such
+/// attribute.
 struct GltfPrimitives::Arrays {
     std::size_t count = 0;
     const std::vector<float>* positions = nullptr;
     const std::vector<float>* normals = nullptr;
     const std::vector<float>* tangents = nullptr;
     const std::vector<float>* uvs = nullptr;
+    std::optional<GltfSkin> skin{};
+
+    std::list<std::vector<float>> morphed{};  ///< what some of the pointers point to
 
     static glm::dvec3 at3(const std::vector<float>& values, std::size_t i, std::size_t stride = 3) {
         return {values[stride * i], values[stride * i + 1], values[stride * i + 2]};
     }
 };
 
-GltfPrimitives::GltfPrimitives(const GltfFile& file, const Warn& warn, SourceScene& scene)
-    : file_(file), warn_(warn), scene_(scene), accessors_(file), converter_(file, warn) {
+/// Adds the vertices of a primitive to the scene, each when it is first asked for.
+class GltfPrimitives::Adder {
+ public:
+    Adder(GltfPrimitives& primitives, const Arrays& arrays, const Material& material,
+          const std::string& place, const glm::dmat4& world_from_mesh)
+        : file_(primitives.file_),
+          scene_(primitives.scene_),
+          new_index_(primitives.new_index_),
+          arrays_(arrays),
+          material_(material),
+          place_(place),
+          node_(world_from_mesh),
+          first_(static_cast<std::uint32_t>(scene_.positions.size())) {
+        if (new_index_.size() < arrays.count) new_index_.resize(arrays.count, kUnused);
+    }
+
+    /// Its index in the scene.
+    std::uint32_t vertex(std::uint32_t i) {
+        if (new_index_[i] == kUnused) {
+            new_index_[i] = static_cast<std::uint32_t>(scene_.positions.size());
+            if (arrays_.skin) {
+                add(i, Placement(arrays_.skin->world_from_vertex(i)));
+            } else {
+                add(i, node_);
+            }
+        }
+        return new_index_[i];
+    }
+
+    /// Whether the vertex of this index in the scene was taken into the world by a reflection.
+    bool is_mirrored(std::uint32_t v) const {
+        return arrays_.skin ? mirrored_[v - first_] : node_.mirrored;
+    }
+    const glm::vec4& tangent(std::uint32_t v) const { return tangents_[v - first_]; }
+
+ private:
+    void add(std::uint32_t i, const Placement& placement) {
+        const glm::dvec4 point(Arrays::at3(*arrays_.positions, i), 1.0);
+        const glm::vec3 position(glm::dvec3(placement.world_from_mesh * point));
+        if (!std::isfinite(position.x + position.y + position.z))
+            fail_at(file_.path, place_, "its node takes it out of the range of floats");
+        scene_.positions.push_back(stored(position));
+        const glm::vec3 normal =
+            arrays_.normals
+                ? stored_direction(placement.of_normals * Arrays::at3(*arrays_.normals, i))
+                : glm::vec3(0.0f);
+        scene_.normals.push_back(normal);
+        scene_.uvs.push_back(uv(i));
+        if (arrays_.tangents) {
+            const glm::vec3 t = stored_direction(glm::dmat3(placement.world_from_mesh) *
+                                                 Arrays::at3(*arrays_.tangents, i, 4));
+            const bool usable = glm::length(glm::cross(t, normal)) > 1e-3f;
+            const float w = (*arrays_.tangents)[4 * i + 3] < 0.0f ? -1.0f : 1.0f;
+            tangents_.push_back(usable ? glm::vec4(t, placement.mirrored ? -w : w)
+                                       : glm::vec4(0.0f));
+        }
+        if (arrays_.skin) mirrored_.push_back(placement.mirrored);
+    }
+
+    glm::vec2 uv(std::uint32_t i) const {
+        glm::dvec2 uv(0.0);
+        if (arrays_.uvs) {
+            uv =
+                material_.of.uv_transform.apply({(*arrays_.uvs)[2 * i], (*arrays_.uvs)[2 * i + 1]});
+        }
+        const glm::vec2 upward(uv.x, 1.0f - static_cast<float>(uv.y));
+        if (!std::isfinite(upward.x + upward.y))
+            fail_at(file_.path, place_,
+                    "its texture's transform takes it out of the range of floats");
+        return stored(upward);
+    }
+
+    const GltfFile& file_;
+    SourceScene& scene_;
+    std::vector<std::uint32_t>& new_index_;
+    const Arrays& arrays_;
+    const Material& material_;
+    const std::string& place_;
+    const Placement node_;
+    const std::uint32_t first_;
+    std::vector<glm::vec4> tangents_;  ///< of the new vertices
+    std::vector<bool> mirrored_;       ///< of those of a skin
+};
+
+GltfPrimitives::GltfPrimitives(const GltfFile& file, const GltfNodes& nodes, const Warn& warn,
+                               SourceScene& scene)
+    : file_(file),
+      nodes_(nodes),
+      warn_(warn),
+      scene_(scene),
+      accessors_(file, warn),
+      converter_(file, warn) {
     // Nodes may show a mesh again and again; a small file must not claim all memory.
     constexpr std::size_t kAlways = std::size_t{1} << 24, kCornersPerByte = 64;
     std::size_t bytes = 0;
@@ -90,14 +204,23 @@ const GltfPrimitives::Material& GltfPrimitives::material(int index) {
     return entry->second;
 }
 
-void GltfPrimitives::expect_mesh(int mesh) {
+const std::vector<glm::dmat4>& GltfPrimitives::joints(int skin) {
+    const auto [entry, fresh] = joints_.try_emplace(skin);
+    if (fresh) entry->second = joint_matrices(file_, nodes_, accessors_, skin);
+    return entry->second;
+}
+
+void GltfPrimitives::expect_node(int node) {
+    const int mesh = file_.model.nodes[static_cast<std::size_t>(node)].mesh;
+    if (mesh < 0) return;
     for (const auto& primitive : file_.model.meshes[static_cast<std::size_t>(mesh)].primitives) {
-        const auto positions = primitive.attributes.find("POSITION");
-        if (positions == primitive.attributes.end()) continue;
-        const bool first_time = read_.insert(positions->second).second;
-        if (std::exchange(read_last_, positions->second) != positions->second && !first_time)
-            read_again_ += accessors_.count(positions->second);
-        const int counted = primitive.indices >= 0 ? primitive.indices : positions->second;
+        const int positions = attribute_of(primitive, "POSITION");
+        if (positions < 0) continue;
+        const std::size_t count = accessors_.count(positions);
+        const bool first_time = read_.insert(positions).second;
+        if (std::exchange(read_last_, positions) != positions && !first_time) read_again_ += count;
+        read_again_ += count * primitive.targets.size();
+        const int counted = primitive.indices >= 0 ? primitive.indices : positions;
         const bool is_list = primitive.mode == TINYGLTF_MODE_TRIANGLES;
         corners_ += accessors_.count(counted) * (is_list ? 1 : 3);
     }
@@ -105,8 +228,8 @@ void GltfPrimitives::expect_mesh(int mesh) {
     constexpr std::size_t kMostReads = std::size_t{1} << 33;
     if (read_again_ > kMostReads) {
         fail_at(file_.path, fmt::format("/meshes/{}", mesh),
-                fmt::format("its nodes take turns with others so often that more than {} positions "
-                            "would be read",
+                fmt::format("its morph targets are so many, or its nodes take turns with others so "
+                            "often, that more than {} positions would be read",
                             kMostReads));
     }
     if (corners_ > most_corners_) {
@@ -117,105 +240,86 @@ void GltfPrimitives::expect_mesh(int mesh) {
     }
 }
 
-GltfPrimitives::Arrays GltfPrimitives::read_arrays(const tinygltf::Primitive& primitive,
+GltfPrimitives::Arrays GltfPrimitives::read_arrays(const tinygltf::Node& node,
+                                                   const tinygltf::Primitive& primitive,
                                                    const Material& material,
                                                    const std::string& place) {
-    const auto attribute = [&](const std::string& name) {
-        const auto found = primitive.attributes.find(name);
-        return found == primitive.attributes.end() ? -1 : found->second;
-    };
-    const int positions = attribute("POSITION");
-    const int normals = attribute("NORMAL");
-    const int tangents = normals < 0 ? -1 : attribute("TANGENT");
-    const int uvs = attribute(fmt::format("TEXCOORD_{}", material.of.uv_set));
+    const std::string uv_name = fmt::format("TEXCOORD_{}", material.of.uv_set);
+    const int positions = attribute_of(primitive, "POSITION");
+    const int normals = attribute_of(primitive, "NORMAL");
+    const int tangents = normals < 0 ? -1 : attribute_of(primitive, "TANGENT");
+    const int uvs = attribute_of(primitive, uv_name);
     accessors_.keep_only(std::array{positions, normals, tangents, uvs});
-    colors_ |= attribute("COLOR_0") >= 0;
+    colors_ |= attribute_of(primitive, "COLOR_0") >= 0;
+    const std::vector<double> weights =
+        morph_weights(node, file_.model.meshes[static_cast<std::size_t>(node.mesh)], primitive);
 
     Arrays arrays;
     arrays.count = accessors_.count(positions);
-    const auto read = [&](int accessor, int components) -> const std::vector<float>* {
+    const auto read = [&](int accessor, const std::string& name,
+                          int components) -> const std::vector<float>* {
         if (accessor < 0) return nullptr;
         if (accessors_.count(accessor) != arrays.count)
             fail_at(file_.path, place + "/attributes", "its accessors differ in count");
-        return &accessors_.floats(accessor, components);
+        const auto& floats = name == "POSITION" ? accessors_.floats(accessor, components)
+                                                : accessors_.optional_floats(accessor, components);
+        if (!is_morphed(primitive, weights, name)) return &floats;
+        auto& morphed = arrays.morphed.emplace_back(floats);
+        add_morph_targets(primitive, weights, name, components, accessors_, morphed);
+        return &morphed;
     };
-    arrays.positions = read(positions, 3);
-    arrays.normals = read(normals, 3);
-    arrays.tangents = read(tangents, 4);
-    arrays.uvs = read(uvs, 2);
+    arrays.positions = read(positions, "POSITION", 3);
+    arrays.normals = read(normals, "NORMAL", 3);
+    arrays.tangents = read(tangents, "TANGENT", 4);
+    arrays.uvs = read(uvs, uv_name, 2);
+    if (node.skin >= 0 && GltfSkin::has_joints(primitive))
+        arrays.skin.emplace(file_, joints(node.skin), primitive, accessors_, arrays.count);
     return arrays;
 }
 
-void GltfPrimitives::add_primitive(const tinygltf::Primitive& primitive, const std::string& place,
-                                   const glm::dmat4& world_from_mesh) {
+std::vector<std::uint32_t> GltfPrimitives::read_indices(const tinygltf::Primitive& primitive,
+                                                        std::size_t vertices,
+                                                        const std::string& place) {
+    std::vector<std::uint32_t> indices;
+    if (primitive.indices < 0) {
+        indices.resize(vertices);
+        for (std::uint32_t i = 0; i < indices.size(); ++i) indices[i] = i;
+        return indices;
+    }
+    indices = accessors_.indices(primitive.indices);
+    for (const std::uint32_t index : indices) {
+        if (index >= vertices)
+            fail_at(file_.path, place + "/indices",
+                    fmt::format("refers to vertex {} of {}", index, vertices));
+    }
+    return indices;
+}
+
+void GltfPrimitives::add_primitive(int node_index, const tinygltf::Primitive& primitive,
+                                   const std::string& place) {
     const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN) fail_at(file_.path, place + "/mode", "is no mode");
     if (mode < TINYGLTF_MODE_TRIANGLES) {
-        ++points_or_lines_;
+        if (points_or_lines_++ == 0) first_points_or_lines_ = place;
         return;
     }
-    if (!primitive.attributes.contains("POSITION")) return;  // allowed, and nothing to see
+    if (attribute_of(primitive, "POSITION") < 0) return;  // allowed, and nothing to see
     const Material& material = this->material(primitive.material);
     if (!material.of.visible) return;
-    const Arrays arrays = read_arrays(primitive, material, place);
+    const auto node = static_cast<std::size_t>(node_index);
+    const Arrays arrays = read_arrays(file_.model.nodes[node], primitive, material, place);
+    const std::vector<std::uint32_t> indices = read_indices(primitive, arrays.count, place);
 
-    std::vector<std::uint32_t> indices;
-    if (primitive.indices >= 0) {
-        indices = accessors_.indices(primitive.indices);
-    } else {
-        indices.resize(arrays.count);
-        for (std::uint32_t i = 0; i < indices.size(); ++i) indices[i] = i;
-    }
-    for (const std::uint32_t index : indices) {
-        if (index >= arrays.count)
-            fail_at(file_.path, place + "/indices",
-                    fmt::format("refers to vertex {} of {}", index, arrays.count));
-    }
-    const auto triangles = triangles_of(mode, indices);
-
-    const glm::dmat3 linear(world_from_mesh);
-    const glm::dmat3 of_normals = normal_matrix(linear);
-    const bool mirrored = glm::determinant(linear) < 0.0;
-    if (new_index_.size() < arrays.count) new_index_.resize(arrays.count, kUnused);
-    std::vector<glm::vec4> tangents;  // of the new vertices
-    const auto first_vertex = static_cast<std::uint32_t>(scene_.positions.size());
-    const auto add_vertex = [&](std::uint32_t i) {
-        new_index_[i] = static_cast<std::uint32_t>(scene_.positions.size());
-        const glm::dvec4 point(Arrays::at3(*arrays.positions, i), 1.0);
-        const glm::vec3 position(glm::dvec3(world_from_mesh * point));
-        if (!std::isfinite(position.x + position.y + position.z))
-            fail_at(file_.path, place, "its node takes it out of the range of floats");
-        scene_.positions.push_back(stored(position));
-        const glm::vec3 normal =
-            arrays.normals ? stored_direction(of_normals * Arrays::at3(*arrays.normals, i))
-                           : glm::vec3(0.0f);
-        scene_.normals.push_back(normal);
-        glm::dvec2 uv(0.0);
-        if (arrays.uvs) {
-            uv = material.of.uv_transform.apply({(*arrays.uvs)[2 * i], (*arrays.uvs)[2 * i + 1]});
-        }
-        const glm::vec2 upward(uv.x, 1.0f - static_cast<float>(uv.y));
-        if (!std::isfinite(upward.x + upward.y))
-            fail_at(file_.path, place,
-                    "its texture's transform takes it out of the range of floats");
-        scene_.uvs.push_back(stored(upward));
-        if (arrays.tangents) {
-            const glm::vec3 t = stored_direction(linear * Arrays::at3(*arrays.tangents, i, 4));
-            const bool usable = glm::length(glm::cross(t, normal)) > 1e-3f;
-            const float w = (*arrays.tangents)[4 * i + 3] < 0.0f ? -1.0f : 1.0f;
-            tangents.push_back(usable ? glm::vec4(t, mirrored ? -w : w) : glm::vec4(0.0f));
-        }
-    };
+    Adder adder(*this, arrays, material, place, nodes_.world_from_node[node]);
     if (arrays.tangents) scene_.tangents.resize(scene_.corners.size(), glm::vec4(0.0f));
-    for (const auto& triangle : triangles) {
+    for (const auto& triangle : triangles_of(mode, indices)) {
+        const bool mirrored = adder.is_mirrored(adder.vertex(triangle[0]));
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t i = triangle[mirrored && k > 0 ? 3 - k : k];
-            if (new_index_[i] == kUnused) add_vertex(i);
-            const std::uint32_t v = new_index_[i];
+            const std::uint32_t v = adder.vertex(triangle[mirrored && k > 0 ? 3 - k : k]);
             const bool has_normal = scene_.normals[v] != glm::vec3(0.0f);
             some_without_normals_ |= !has_normal;
             scene_.corners.push_back({.position = v, .normal = has_normal ? v : kAbsent, .uv = v});
-            if (arrays.tangents) scene_.tangents.push_back(tangents[v - first_vertex]);
+            if (arrays.tangents) scene_.tangents.push_back(adder.tangent(v));
         }
         scene_.triangle_material.push_back(material.index);
     }
@@ -225,19 +329,19 @@ void GltfPrimitives::add_primitive(const tinygltf::Primitive& primitive, const s
     if (some_without_normals_) scene_.smoothing_group.resize(scene_.triangle_material.size(), 0);
 }
 
-void GltfPrimitives::add_mesh(int mesh, const glm::dmat4& world_from_mesh) {
+void GltfPrimitives::add_node(int node) {
+    const int mesh = file_.model.nodes[static_cast<std::size_t>(node)].mesh;
+    if (mesh < 0) return;
     const auto& primitives = file_.model.meshes[static_cast<std::size_t>(mesh)].primitives;
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
-        add_primitive(primitives[i], fmt::format("/meshes/{}/primitives/{}", mesh, i),
-                      world_from_mesh);
-    }
+    for (std::size_t i = 0; i < primitives.size(); ++i)
+        add_primitive(node, primitives[i], fmt::format("/meshes/{}/primitives/{}", mesh, i));
 }
 
 void GltfPrimitives::warn_of_left_out() const {
     const std::string name = file_.path.string();
     if (points_or_lines_ > 0) {
-        warn_(fmt::format("{}: points and lines are left out ({} primitives)", name,
-                          points_or_lines_));
+        warn_(fmt::format("{}: {}: points and lines are left out ({} primitives)", name,
+                          first_points_or_lines_, points_or_lines_));
     }
     if (colors_) warn_(name + ": vertex colours are left out");
 }

@@ -13,6 +13,7 @@
 #include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/gltf/accessors.h"
 #include "cw2-bake/gltf/materials.h"
+#include "cw2-bake/gltf/nodes.h"
 
 namespace bake {
 
@@ -24,45 +25,52 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(int mode,
 class GltfPrimitives {
  public:
     /// All must outlive this.
-    GltfPrimitives(const GltfFile& file, const Warn& warn, SourceScene& scene);
+    GltfPrimitives(const GltfFile& file, const GltfNodes& nodes, const Warn& warn,
+                   SourceScene& scene);
 
-    /// To be called for each mesh that will be added, before any is and in their order: throws
+    /// To be called for each node that will be added, before any is and in their order: throws
     /// BakeError where they are so many that a small file would claim all memory, or all day.
-    void expect_mesh(int mesh);
+    void expect_node(int node);
 
-    /// Adds the mesh's triangles, transformed. Throws BakeError.
-    void add_mesh(int mesh, const glm::dmat4& world_from_mesh);
+    /// Adds the triangles of the node's mesh, if it has one, as its skin or else its place in the
+    /// world and the weights of its morph targets have them. Throws BakeError.
+    void add_node(int node);
 
     /// Of what was left out, once for the file.
     void warn_of_left_out() const;
 
  private:
-    struct Place;
     struct Arrays;
+    class Adder;
     struct Material {
         GltfMaterial of;
         std::uint32_t index;  ///< in the scene
     };
     const Material& material(int index);
-    Arrays read_arrays(const tinygltf::Primitive& primitive, const Material& material,
-                       const std::string& place);
-    void add_primitive(const tinygltf::Primitive& primitive, const std::string& place,
-                       const glm::dmat4& world_from_mesh);
+    const std::vector<glm::dmat4>& joints(int skin);
+    Arrays read_arrays(const tinygltf::Node& node, const tinygltf::Primitive& primitive,
+                       const Material& material, const std::string& place);
+    std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
+                                            std::size_t vertices, const std::string& place);
+    void add_primitive(int node, const tinygltf::Primitive& primitive, const std::string& place);
 
     const GltfFile& file_;
+    const GltfNodes& nodes_;
     const Warn& warn_;
     SourceScene& scene_;
     GltfAccessors accessors_;
     GltfMaterials converter_;
-    std::map<int, Material> materials_;  ///< by index in the glTF
+    std::map<int, Material> materials_;              ///< by index in the glTF
+    std::map<int, std::vector<glm::dmat4>> joints_;  ///< by skin
     std::vector<std::uint32_t>
         new_index_;  ///< of the vertices of the primitive at hand; else kUnused
     std::size_t corners_ = 0;
     std::set<int> read_;  ///< accessors of positions
     int read_last_ = -1;
-    std::size_t read_again_ = 0;  ///< positions, because others were read in between
+    std::size_t read_again_ = 0;  ///< positions of targets, and where others were in between
     std::size_t most_corners_;
     std::size_t points_or_lines_ = 0;
+    std::string first_points_or_lines_;
     bool colors_ = false;
     bool some_without_normals_ = false;
 };

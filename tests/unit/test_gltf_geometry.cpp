@@ -65,8 +65,10 @@ TEST_F(GltfGeometry, PointsAndLinesAreLeftOutWithOneWarning) {
     primitives[1]["mode"] = 0;
     primitives[2]["mode"] = 3;
     EXPECT_EQ(triangle_count(read(gltf)), 2u);
-    EXPECT_EQ(warnings_,
-              std::vector<std::string>{"scene.glb: points and lines are left out (2 primitives)"});
+    EXPECT_EQ(
+        warnings_,
+        std::vector<std::string>{
+            "scene.glb: /meshes/0/primitives/1: points and lines are left out (2 primitives)"});
     primitives.erase(0);
     EXPECT_EQ(error(gltf), "scene.glb: shows no triangles");
 }
@@ -267,11 +269,11 @@ TEST_F(GltfGeometry, OnlyVerticesInUseAreKept) {
     EXPECT_EQ(read(gltf).positions.size(), 3u);
 }
 
-TEST_F(GltfGeometry, TheFirstCameraAndPointLightBecomeTheScenes) {
+TEST_F(GltfGeometry, TheFirstCameraAndLightBecomeTheScenes) {
     GltfWriter gltf = square_gltf();
     gltf.root["extensionsUsed"] = {"KHR_lights_punctual"};
     gltf.root["extensions"]["KHR_lights_punctual"]["lights"] = {
-        {{"type", "directional"}}, {{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 64}}};
+        {{"type", "area"}}, {{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 64}}};
     gltf.root["cameras"] = {
         {{"type", "orthographic"},
          {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"zfar", 2}, {"znear", 1}}}},
@@ -295,9 +297,11 @@ TEST_F(GltfGeometry, TheFirstCameraAndPointLightBecomeTheScenes) {
     EXPECT_EQ(scene.light->position, glm::vec3(0, 4, 1));
     // 64 at a distance of 4 from the box's centre.
     EXPECT_NEAR(glm::distance(scene.light->color, glm::vec3(4, 2, 0)), 0, 1e-5);
-    EXPECT_EQ(warnings_, (std::vector<std::string>{
-                             "scene.glb: /cameras/0: is not in perspective, and left out",
-                             "scene.glb: lights beside the first point light are left out (2)"}));
+    EXPECT_EQ(warnings_,
+              (std::vector<std::string>{
+                  "scene.glb: /cameras/0: is not in perspective, and left out",
+                  "scene.glb: /extensions/KHR_lights_punctual/lights/0: is left out, for "
+                  "one light is used, the first (2 left out in all)"}));
 }
 
 }  // namespace

@@ -29,8 +29,25 @@ json& primitive(GltfWriter& gltf) {
 
 const Damage kDamages[] = {
     {"/: has no asset", [](GltfWriter& g) { g.root.erase("asset"); }},
-    {"/asset/version: is '1.0', not 2.0",
+    {"/asset/version: is glTF 1.0; only 2.0 is read",
      [](GltfWriter& g) { g.root["asset"]["version"] = "1.0"; }},
+    {"/asset/version: is glTF 1.0; only 2.0 is read",
+     [](GltfWriter& g) { g.root["asset"]["version"] = 1; }},
+    {"/asset/version: is glTF 1.1; only 2.0 is read",
+     [](GltfWriter& g) {
+         g.root = {{"asset", {{"version", 1.1}}}, {"meshes", json::object()}};
+     }},
+    {"/asset/version: is missing, so this is glTF 1.0; only 2.0 is read",
+     [](GltfWriter& g) {
+         g.root = {{"meshes", json::object()}, {"scene", "a"}};
+     }},
+    {"/asset/version: is glTF 3.0; only 2.0 is read",
+     [](GltfWriter& g) { g.root["asset"]["version"] = "3.0"; }},
+    {"/asset/version: is glTF 'two'; only 2.0 is read",
+     [](GltfWriter& g) { g.root["asset"]["version"] = "two"; }},
+    {"/asset/version: is no string",
+     [](GltfWriter& g) { g.root["asset"]["version"] = json::array(); }},
+    {"/asset: has no version", [](GltfWriter& g) { g.root["asset"] = json::object(); }},
     {"/extensionsRequired/1: the extension 'KHR_draco_mesh_compression' is not supported",
      [](GltfWriter& g) {
          g.root["extensionsRequired"] = {"KHR_texture_transform", "KHR_draco_mesh_compression"};
@@ -125,13 +142,13 @@ const Damage kDamages[] = {
      [](GltfWriter& g) {
          g.root["nodes"][0]["scale"] = {1e300, 1, 1};
      }},
-    {"/scenes/0/nodes/1: is node 0 again",
+    {"/cameras/0/type: is 'round', which is none",
      [](GltfWriter& g) {
-         g.root["scenes"][0]["nodes"] = {0, 0};
+         g.root["cameras"] = {{{"type", "round"}}};
      }},
-    {"/scenes/0/nodes/0: is a child of another node",
+    {"/cameras/0: has no perspective",
      [](GltfWriter& g) {
-         g.root["nodes"] = {{{"mesh", 0}}, {{"children", {0}}}};
+         g.root["cameras"] = {{{"type", "perspective"}}};
      }},
     {"/nodes/0/extensions/KHR_lights_punctual/light: is absurdly large",
      [](GltfWriter& g) {
@@ -193,8 +210,18 @@ TEST_F(GltfMalformed, JsonIsRefusedWithItsLine) {
     EXPECT_EQ(error_of_text("{\"asset\":\n\n"), "scene.gltf:3: is no JSON: unexpected end");
     EXPECT_EQ(error_of_text(""), "scene.gltf:1: is no JSON: unexpected end");
     EXPECT_EQ(error_of_text("[]"), "scene.gltf: /: is no object");
+    EXPECT_EQ(error_of_text("{\"a\": \"1e999 \\\" 2\", \"b\": 1e-999,\n\"c\": [4, -1e309]}"),
+              "scene.gltf:2: is no JSON: the number -1e309 is too large");
     EXPECT_EQ(error_of_text("{\n\"extras\": " + std::string(100'000, '[')),
               "scene.gltf:2: is nested deeper than 64 levels");
+}
+
+TEST_F(GltfMalformed, AVersionMayBeANumber) {
+    for (const json& version : {json(2), json(2.0), json("2"), json("2.0"), json("2.1")}) {
+        GltfWriter gltf = square_gltf();
+        gltf.root["asset"]["version"] = version;
+        EXPECT_EQ(error(gltf), "");
+    }
 }
 
 TEST_F(GltfMalformed, EveryTruncationOfABinaryIsRefused) {

@@ -215,24 +215,26 @@ TEST_F(GltfMaterials, ImagesThatCannotBeHadAreNamedOnce) {
 }
 
 TEST_F(GltfMaterials, WhatIsLeftOutIsNamedOnce) {
-    GltfWriter gltf =
-        with_material({{"emissiveFactor", {1, 0, 0}},
-                       {"extensions", {{"KHR_materials_clearcoat", json::object()}}}});
+    GltfWriter gltf = with_material({{"occlusionTexture", {{"index", 0}}},
+                                     {"extensions",
+                                      {{"KHR_materials_clearcoat", json::object()},
+                                       {"KHR_materials_variants", json::object()},
+                                       {"KHR_materials_sheen", {{"extensions", {{"X", 1}}}}}}}});
     gltf.root["materials"].push_back(gltf.root["materials"][0]);
-    gltf.root["extensionsUsed"] = {"KHR_materials_clearcoat", "KHR_xmp_json_ld"};
-    gltf.root["skins"] = {{{"joints", {0}}}};
-    gltf.root["animations"] = json::array({json::object()});
-    json& primitive = gltf.root["meshes"][0]["primitives"][0];
-    primitive["targets"] = {{{"POSITION", 0}}};
-    primitive["attributes"]["COLOR_0"] = 0;
+    gltf.root["materials"][1]["extensions"].erase("KHR_materials_sheen");
+    gltf.root["extensionsUsed"] = {"KHR_materials_ior", "KHR_xmp_json_ld"};
+    gltf.root["nodes"][0]["extras"]["extensions"]["Y"] = 1;
+    gltf.root["samplers"] = {{{"magFilter", 9728}}, {{"magFilter", 9729}}, {{"minFilter", 9728}}};
     read(gltf);
-    EXPECT_EQ(
-        warnings_,
-        (std::vector<std::string>{
-            "scene.glb: is shown in its rest pose; left out: skins, animations, morph targets",
-            "scene.glb: emissive materials do not glow",
-            "scene.glb: the extension 'KHR_materials_clearcoat' is not supported, and ignored",
-            "scene.glb: vertex colours are left out"}));
+    EXPECT_EQ(warnings_,
+              (std::vector<std::string>{
+                  "scene.glb: /materials/0/occlusionTexture: ambient occlusion is left out (2 such "
+                  "places)",
+                  "scene.glb: /samplers/0/magFilter: is nearest: textures are smooth all the same",
+                  "scene.glb: /materials/0/extensions/KHR_materials_clearcoat: the extension "
+                  "'KHR_materials_clearcoat' is not supported, and left out (2 such places)",
+                  "scene.glb: /materials/0/extensions/KHR_materials_sheen: the extension "
+                  "'KHR_materials_sheen' is not supported, and left out"}));
 }
 
 }  // namespace
