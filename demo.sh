@@ -11,14 +11,14 @@ if [[ $# -gt 1 || ${1:-figures} != figures ]]; then
 fi
 
 court='--camera-position 7.8,2.5,2.3 --camera-target -1.5,2.15,-0.3
-       --light-position 4,7,5 --light-color 2.5,2.4,2.2'
+       --light-position 4,7,5'
 lion='--camera-position 2.6,2.6,3 --camera-target 1.15,2.35,1.15
-      --light-position 5,4.5,2.5 --light-color 2,2,2'
+      --light-position 5,4.5,2.5'
 plants='--camera-position 9.35,1.5,0.35 --camera-target 5.9,1.15,-2.9
-        --light-position 8,5,3 --light-color 2.2,2.2,2.2'
+        --light-position 8,5,3'
 # picture | what cw2 is told besides the scene
 pictures="
-overview       | --light-color 2,2,2
+overview       |
 courtyard      | ${court//$'\n'/}
 courtyard-5s   | ${court//$'\n'/} --time 5.4
 lion           | ${lion//$'\n'/}

@@ -24,18 +24,17 @@ draw() {
         exec "$cw2" "$scene" --output "$name" "$@"' "$bin/cw2" "$work"
 }
 
-court='--camera-position 7.8,2.5,2.3 --camera-target -1.5,2.15,-0.3 --light-color 2.5,2.4,2.2'
+court='--camera-position 7.8,2.5,2.3 --camera-target -1.5,2.15,-0.3'
 day="$court --light-position 4,7,5"
 against="$court --light-position -6,5,-1"
-lion='--camera-position 2.6,2.6,3 --camera-target 1.15,2.35,1.15 --light-color 2,2,2'
-plants="--camera-position 9.35,1.5,0.35 --camera-target 5.9,1.15,-2.9 --light-position 8,5,3 \
---light-color 2.2,2.2,2.2"
+lion='--camera-position 2.6,2.6,3 --camera-target 1.15,2.35,1.15'
+plants="--camera-position 9.35,1.5,0.35 --camera-target 5.9,1.15,-2.9 --light-position 8,5,3"
 chain="--camera-position 7.6,1.25,0.2 --camera-target 8.61,0.6,-2.59 --fov 18 \
---light-position 7,4,3 --light-color 2,2,2"
+--light-position 7,4,3"
 tiles="--camera-position 2.1,1.35,-4.6 --camera-target 2,1.15,-6 --fov 42 \
---light-position 0.6,2.1,-5.65 --light-color 5,4.8,4.6"
+--light-position 0.6,2.1,-5.65 --exposure 2.3"
 brow="--camera-position 2,2.6,2.4 --camera-target 1.15,2.55,1.15 --fov 30 \
---light-position 3.5,4,0.5 --light-color 1.6,1.6,1.6"
+--light-position 3.5,4,0.5 --exposure 0.7"
 
 draw <<END
 quat48 courtyard.png --size 960x540 $day --time 5.4
@@ -78,7 +77,7 @@ END
 
 # The lion's face, each form of its frames beside the exact one.
 face="--size 256x256 --samples 1 --camera-position 2.6,2.6,3 --camera-target 1.15,2.35,1.15 \
---light-position 5,4.5,2.5 --light-color 2,2,2"
+--light-position 5,4.5,2.5"
 for form in "${forms[@]}"; do
     for view in shaded vertex-normal tangent bitangent; do
         echo "$form \"$work/$form-$view.exr\" --view $view $face"

@@ -15,7 +15,7 @@ source ../tests/window/session.sh
 "$build/bin/cw2-bake" "$build/assets/demo/courtyard.obj" -o "$scene" --quiet
 start_display
 open_window "$cw2" "$scene" --size 1200x760 --samples 4 --light-position 4,7,5 \
-    --light-color 2.5,2.4,2.2 --camera-position 7.8,2.5,2.3 --camera-target=-1.5,2.15,-0.3 \
+    --camera-position 7.8,2.5,2.3 --camera-target=-1.5,2.15,-0.3 \
     --split normal,shaded --divider 0.44
 press Tab
 take_picture shift+F12

@@ -20,8 +20,23 @@ Options completed(Options options, const SceneStart& start) {
     return options;
 }
 
-FrameSettings frame_settings(const Options& options, const Bounds& bounds, float aspect) {
+namespace {
+
+Camera start_camera(const Options& options, const Bounds& bounds, float aspect) {
     constexpr float kRadiansPerDegree = 3.14159265f / 180.0f;
+    const float fov = options.vertical_fov.value_or(kVerticalFov) * kRadiansPerDegree;
+    Camera camera = options.camera_position ? Camera{*options.camera_position, bounds.center, fov}
+                                            : default_camera(bounds, fov, aspect);
+    camera.target = options.camera_target.value_or(camera.target);
+    if (camera.position == camera.target) {
+        throw UsageError("the camera's position and target are the same point");
+    }
+    return camera;
+}
+
+}  // namespace
+
+FrameSettings frame_settings(const Options& options, const Bounds& bounds, float aspect) {
     FrameSettings settings;
     const auto side_of = [&](Side side) {
         side.normal_map &= options.normal_map;
@@ -33,14 +48,9 @@ FrameSettings frame_settings(const Options& options, const Bounds& bounds, float
     if (options.split) settings.split = {side_of(options.split->back()), options.divider};
     settings.exposure = options.exposure;
     settings.false_color = options.false_color;
-    const float fov = options.vertical_fov.value_or(kVerticalFov) * kRadiansPerDegree;
-    settings.camera = default_camera(bounds, fov, aspect);
-    settings.camera.position = options.camera_position.value_or(settings.camera.position);
-    settings.camera.target = options.camera_target.value_or(settings.camera.target);
-    if (settings.camera.position == settings.camera.target) {
-        throw UsageError("the camera's position and target are the same point");
-    }
-    settings.light = {options.light_position.value_or(default_light_position(bounds)),
+    settings.camera = start_camera(options, bounds, aspect);
+    settings.light = {options.light_position ? *options.light_position
+                                             : default_light_position(bounds, settings.camera),
                       options.light_color.value_or(glm::vec3(1.0f)), options.ambient};
     settings.materials = {options.roughness, options.metalness, options.normal_strength};
     settings.background = options.background;

@@ -31,7 +31,7 @@ struct Options {
     View view = interop::kViewShaded;
     std::optional<std::array<Side, 2>> split;  ///< in place of `view`
     float divider = 0.5f;                      ///< in [0, 1]
-    float exposure = 0.0f;                     ///< stops, in [-64, 64]
+    std::optional<float> exposure;             ///< stops, in [-64, 64]; none: by the view
     std::optional<FalseColor> false_color;
     std::optional<std::uint32_t> samples;  ///< 1 or 4; none: by the device and the output
     std::optional<glm::vec3> camera_position;

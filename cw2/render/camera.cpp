@@ -1,18 +1,23 @@
 #include "cw2/render/camera.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 namespace cw2 {
 
-Bounds bounds_of(const mesh_format::SceneRecord& scene) {
+Bounds bounds_of(const mesh_format::SceneRecord& scene, std::span<const glm::vec3> vertices) {
     const glm::vec3 low = glm::make_vec3(scene.bounds_min);
     const glm::vec3 high = glm::make_vec3(scene.bounds_max);
-    // A scene of one point still has a picture.
-    return {0.5f * (low + high), std::max(scene.radius, 1e-6f)};
+    const glm::vec3 center(0.5 * (glm::dvec3(low) + glm::dvec3(high)));
+    if (scene.radius > 0.0f) return {center, scene.radius, vertices};
+    // A scene of one point still has a picture, from where floats tell camera and point apart.
+    const auto distance = static_cast<float>(glm::length(glm::dvec3(center)));
+    return {center, distance > 0.0f ? 1e-3f * distance : 1.0f, vertices};
 }
 
 SceneStart start_of(const mesh_format::SceneRecord& scene) {
@@ -28,12 +33,37 @@ SceneStart start_of(const mesh_format::SceneRecord& scene) {
     return start;
 }
 
+CameraAxes axes_of(const Camera& camera) {
+    const glm::dvec3 back = glm::normalize(glm::dvec3(camera.position) - glm::dvec3(camera.target));
+    const glm::dvec3 up =
+        std::abs(back.y) < 0.9999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
+    const glm::dvec3 right = glm::normalize(glm::cross(up, back));
+    return {right, glm::cross(back, right), back};
+}
+
 Camera default_camera(const Bounds& bounds, float vertical_fov, float aspect) {
-    const float half_vertical = 0.5f * vertical_fov;
-    const float half_horizontal = std::atan(std::tan(half_vertical) * aspect);
-    const float distance = bounds.radius / std::sin(std::min(half_vertical, half_horizontal));
-    const glm::vec3 direction = glm::normalize(glm::vec3(1.0f, 0.5f, 1.0f));
-    return {bounds.center + distance * direction, bounds.center, vertical_fov};
+    constexpr double kInside = 0.95;
+    const glm::dvec3 center(bounds.center);
+    const CameraAxes axes = axes_of({{1.0f, 0.5f, 1.0f}, glm::vec3(0.0f), vertical_fov});
+    const double high = kInside * std::tan(0.5 * double{vertical_fov});
+    const double wide = high * double{aspect};
+    // At distance d a point is in view where |x| <= wide (d - z), |y| <= high (d - z), and, with
+    // something to spare, where it lies beyond the near plane.
+    const double beyond = 2.0 * double{near_distance(bounds)};
+    using Range = tbb::blocked_range<std::size_t>;
+    const double distance = tbb::parallel_reduce(
+        Range(0, bounds.vertices.size(), 16'384), beyond,
+        [&](const Range& range, double largest) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const glm::dvec3 arm = glm::dvec3(bounds.vertices[i]) - center;
+                const double aside = std::max(std::abs(glm::dot(arm, axes.right)) / wide,
+                                              std::abs(glm::dot(arm, axes.up)) / high);
+                largest = std::max(largest, glm::dot(arm, axes.back) + std::max(aside, beyond));
+            }
+            return largest;
+        },
+        [](double a, double b) { return std::max(a, b); });
+    return {glm::vec3(center + distance * axes.back), bounds.center, vertical_fov};
 }
 
 Camera around_target(const Camera& camera, double radians) {
@@ -45,10 +75,11 @@ Camera around_target(const Camera& camera, double radians) {
 }
 
 glm::mat4 view_from_world(const Camera& camera) {
-    const glm::vec3 forward = glm::normalize(camera.target - camera.position);
-    const glm::vec3 up =
-        std::abs(forward.y) < 0.9999f ? glm::vec3(0.0f, 1.0f, 0.0f) : glm::vec3(0.0f, 0.0f, -1.0f);
-    return glm::lookAtRH(camera.position, camera.position + forward, up);
+    const CameraAxes axes = axes_of(camera);
+    const glm::dmat3 world_from_view(axes.right, axes.up, axes.back);
+    glm::dmat4 view(glm::transpose(world_from_view));
+    view[3] = glm::dvec4(-(glm::dvec3(camera.position) * world_from_view), 1.0);
+    return glm::mat4(view);
 }
 
 glm::mat4 clip_from_view(float vertical_fov, float aspect, float near) {
@@ -66,14 +97,17 @@ float near_distance(const Bounds& bounds) {
     return 1e-4f * bounds.radius;
 }
 
-glm::vec3 default_light_position(const Bounds& bounds) {
-    return bounds.center + bounds.radius * glm::vec3(0.5f, 0.8f, 0.6f);
+glm::vec3 default_light_position(const Bounds& bounds, const Camera& camera) {
+    const CameraAxes axes = axes_of(camera);
+    const glm::dvec3 direction =
+        glm::normalize(0.75 * axes.back + 0.55 * axes.up - 0.45 * axes.right);
+    return glm::vec3(glm::dvec3(bounds.center) + 4.0 * double{bounds.radius} * direction);
 }
 
 glm::vec3 orbit(const glm::vec3& start, const glm::vec3& center, double seconds) {
     const double sine = std::sin(seconds);
     const double cosine = std::cos(seconds);
-    const glm::dvec3 arm(start - center);
+    const glm::dvec3 arm = glm::dvec3(start) - glm::dvec3(center);
     const glm::dvec3 turned(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y, arm.z);
     return glm::vec3(glm::dvec3(center) + turned);
 }

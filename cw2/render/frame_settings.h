@@ -36,7 +36,8 @@ struct FrameSettings : Side {
     Light light{};
     MaterialOverrides materials{};
     glm::vec3 background{0.1f};             ///< linear
-    float exposure = 0.0f;                  ///< stops: values are multiplied by 2^exposure
+    /// Stops: values are multiplied by 2^exposure; none: default_exposure() of each side's view.
+    std::optional<float> exposure;
     std::optional<FalseColor> false_color;  ///< in place of the exposure
     /// One pipeline draws every view, and what interop.h says can be read: for those who want many
     /// views of little. It is slower than one made for a view.

@@ -83,8 +83,8 @@ interop::DrawConstants draw_constants(const Draw& draw, const MaterialOverrides&
 }
 
 interop::DisplayConstants display_constants(const Side& side, const FrameSettings& settings) {
-    interop::DisplayConstants constants{.exposure = std::exp2(settings.exposure),
-                                        .view = side.view};
+    const float stops = settings.exposure.value_or(default_exposure(side.view));
+    interop::DisplayConstants constants{.exposure = std::exp2(stops), .view = side.view};
     if (settings.false_color) {
         const ValueRange range = settings.false_color->range_of(side.view);
         constants.false_color_low = range.low;

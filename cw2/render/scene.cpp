@@ -11,6 +11,7 @@
 #include "common/file_kind.h"
 #include "common/lfs_pointer.h"
 #include "cw2/render/decode_textures.h"
+#include "cw2/render/vertex_positions.h"
 #include "mesh-format/blocks.h"
 #include "mesh-format/decode.h"
 
@@ -156,7 +157,8 @@ Buffer upload_buffer(const Device& device, Uploader& uploader, std::span<const s
 
 Scene::Scene(const Device& device, const Layouts& layouts, const Document& document,
              const TextureSettings& settings)
-    : bounds_(bounds_of(document.scene)),
+    : positions_(vertex_positions(document)),
+      bounds_(bounds_of(document.scene, positions_)),
       start_(start_of(document.scene)),
       repeat_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, settings.anisotropy)),
       clamp_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, settings.anisotropy)) {

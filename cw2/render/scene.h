@@ -79,6 +79,7 @@ class Scene {
     void write_material_set(const Device& device, VkDescriptorSet set,
                             const mesh_format::MaterialRecord& material) const;
 
+    std::vector<glm::vec3> positions_;
     Bounds bounds_;
     SceneStart start_;
     Buffer vertices_;

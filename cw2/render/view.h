@@ -71,6 +71,12 @@ inline constexpr std::array<ValueRange, interop::kViewCount> kViewRanges{{
     {0.0f, 1.0f},      // alpha-mask
 }};
 
+/// Stops by which what people look at is brightened where nobody asks for others: log2(pi) for the
+/// picture, so that white paper that faces the light is white.
+constexpr float default_exposure(View view) {
+    return view == interop::kViewShaded ? 1.6514961f : 0.0f;
+}
+
 /// That a view is to be shown in false colours.
 struct FalseColor {
     std::optional<ValueRange> range;  ///< none: the view's own

@@ -3,24 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/mat4x4.hpp>
 
 namespace cw2 {
 
-namespace {
-
-/// The world's direction that is to the right in the picture.
-glm::vec3 right_of(const Camera& camera) {
-    const glm::mat4 view = view_from_world(camera);
-    return {view[0][0], view[1][0], view[2][0]};
-}
-
-}  // namespace
-
 Camera moved(const Camera& camera, const glm::vec3& way) {
-    const glm::vec3 forward = glm::normalize(camera.target - camera.position);
+    const CameraAxes axes = axes_of(camera);
     const glm::vec3 step =
-        way.x * right_of(camera) + glm::vec3(0.0f, way.y, 0.0f) + way.z * forward;
+        way.x * glm::vec3(axes.right) + glm::vec3(0.0f, way.y, 0.0f) - way.z * glm::vec3(axes.back);
     return {camera.position + step, camera.target + step, camera.vertical_fov};
 }
 
@@ -28,7 +17,7 @@ Camera turned(const Camera& camera, const glm::vec2& angle) {
     constexpr float kSteepest = 1.5533430f;  // 89 degrees
     const glm::vec3 sight = camera.target - camera.position;
     // Unlike the sight, the horizontal axis has a heading also for a camera that looks along y.
-    const glm::vec3 right = right_of(camera);
+    const glm::vec3 right(axes_of(camera).right);
     const float heading = std::atan2(right.z, right.x) + angle.x;
     const float rise = std::atan2(sight.y, std::hypot(sight.x, sight.z)) - angle.y;
     const float pitch = std::clamp(rise, -kSteepest, kSteepest);

@@ -21,7 +21,7 @@ namespace {
 constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
 constexpr ImGuiColorEditFlags kColor =
     ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_NoLabel;
-constexpr float kLargest = 1e6f;  // coordinate and colour that can be entered
+constexpr float kLargest = 1e6f;  // value that can be entered
 
 struct KeyHelp {
     const char* keys;
@@ -168,14 +168,29 @@ void false_color_rows(Options& options) {
     scale_bar(shown);
 }
 
-void value_section(Options& options) {
-    if (!section("Values as colours")) return;
+void exposure_row(Options& options) {
     label("exposure");
     if (options.false_color) {
         ImGui::TextDisabled("none with false colours");
-    } else {
-        ImGui::SliderFloat("##exposure", &options.exposure, -10.0f, 10.0f, "%+.1f stops", kClamp);
+        return;
     }
+    const View view = options.split ? options.split->front().view : options.view;
+    bool own = !options.exposure;
+    if (ImGui::Checkbox("of the view##exposure", &own)) {
+        options.exposure = own ? std::nullopt : std::optional(default_exposure(view));
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0f);
+    if (options.exposure) {
+        ImGui::SliderFloat("##exposure", &*options.exposure, -10.0f, 10.0f, "%+.1f stops", kClamp);
+    } else {
+        ImGui::TextDisabled("%+.2f stops", static_cast<double>(default_exposure(view)));
+    }
+}
+
+void value_section(Options& options) {
+    if (!section("Values as colours")) return;
+    exposure_row(options);
     false_color_rows(options);
 }
 
@@ -184,8 +199,10 @@ void light_section(PanelState& state, const Bounds& bounds) {
     Options& options = state.options;
     label("position");
     glm::vec3 position = orbit(*options.light_position, bounds.center, options.time);
-    if (ImGui::DragFloat3("##light", glm::value_ptr(position), 0.005f * bounds.radius, -kLargest,
-                          kLargest, "%.2f", kClamp)) {
+    // Coordinates that can be entered, by the scene's.
+    const float largest = 1e6f * (glm::length(bounds.center) + bounds.radius);
+    if (ImGui::DragFloat3("##light", glm::value_ptr(position), 0.005f * bounds.radius, -largest,
+                          largest, "%.4g", kClamp)) {
         options.light_position = orbit(position, bounds.center, -options.time);
     }
     label("orbit");
@@ -205,7 +222,7 @@ void camera_section(Options& options, std::vector<Command>& commands) {
     label("field of view");
     ImGui::SliderFloat("##fov", &*options.vertical_fov, 1.0f, 179.0f, "%.1f\xc2\xb0", kClamp);
     const auto vector = [](const glm::vec3& v) {
-        return fmt::format("{:.2f}, {:.2f}, {:.2f}", v.x, v.y, v.z);
+        return fmt::format("{:.4g}, {:.4g}, {:.4g}", v.x, v.y, v.z);
     };
     reading("at", vector(*options.camera_position));
     reading("towards", vector(*options.camera_target));

@@ -125,7 +125,7 @@ TEST_F(Pictures, PngHoldsSrgbAndExrLinearValues) {
 }
 
 TEST_F(Pictures, PngIsTheExrEncoded) {
-    const Options options{"--size", "160x90", "--samples", "1"};
+    const Options options{"--size", "160x90", "--samples", "1", "--exposure", "0"};
     const Picture png = draw("stage", ".png", options);
     const Picture exr = draw("stage", ".exr", options);
     ASSERT_EQ(png.channels, 3);
@@ -330,13 +330,56 @@ TEST_F(Pictures, TheLightTurnsAboutZThroughTheCentre) {
     EXPECT_LE(largest_difference(orbited, placed), 1e-6);
 }
 
-TEST_F(Pictures, TheDefaultLightHangsAboveTheScene) {
-    const double radius = std::sqrt(5.0);  // of the plate's bounding sphere about the origin
-    const Picture unspoken = draw_frontal("plate", ".exr", "light-direction");
-    const Picture spoken = draw_frontal(
-        "plate", ".exr", "light-direction",
-        {"--light-position", fmt::format("{},{},{}", 0.5 * radius, 0.8 * radius, 0.6 * radius)});
-    EXPECT_LE(largest_difference(unspoken, spoken), 1e-6);
+/// Four radii of the plate's bounding sphere from its centre, the origin, along 0.75 v + 0.55 u -
+/// 0.45 r, as an option.
+std::string over_left_shoulder(const dvec3& v, const dvec3& u, const dvec3& r) {
+    const dvec3 light = 4.0 * std::sqrt(5.0) * glm::normalize(0.75 * v + 0.55 * u - 0.45 * r);
+    return fmt::format("{},{},{}", light.x, light.y, light.z);
+}
+
+TEST_F(Pictures, TheDefaultLightIsOverTheLeftShoulderOfTheCamera) {
+    const dvec3 v = glm::normalize(dvec3(1.0, 0.5, 1.0));
+    const dvec3 r = glm::normalize(glm::cross(dvec3(0.0, 1.0, 0.0), v));
+    const struct {
+        Options camera;
+        std::string light;
+    } table[] = {
+        {{}, over_left_shoulder(v, glm::cross(v, r), r)},
+        {{"--camera-position", "0,0,2", "--camera-target", "0,0,0"},
+         over_left_shoulder({0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0})},
+        {{"--camera-position", "0,5,0", "--camera-target", "0,0,0"},
+         over_left_shoulder({0.0, 1.0, 0.0}, {0.0, 0.0, -1.0}, {1.0, 0.0, 0.0})},
+    };
+    for (const auto& [camera, light] : table) {
+        Options options{"--view", "light-direction", "--size", "160x90", "--samples", "1"};
+        options.insert(options.end(), camera.begin(), camera.end());
+        const Picture by_default = draw("plate", ".exr", options);
+        options.insert(options.end(), {"--light-position", light});
+        EXPECT_LE(largest_difference(by_default, draw("plate", ".exr", options)), 1e-6) << light;
+    }
+}
+
+TEST_F(Pictures, WhitePaperThatFacesTheLightIsWhite) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "paper.mtl") << "newmtl paper\nKd 1 1 1\nPr 1\n";
+    std::ofstream(folder / "paper.obj") << "mtllib paper.mtl\nusemtl paper\nv -1 -1 0\nv 1 -1 0\n"
+                                           "v 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+    const auto scene = bake_scene(folder / "paper.obj");
+    const auto middle = [&](const std::string& extension, Options options) {
+        options.insert(options.end(),
+                       {"--size", "33x33", "--samples", "1", "--camera-position", "0,0,3",
+                        "--camera-target", "0,0,0", "--light-position", "0,0,9"});
+        return double{draw_scene(scene, extension, options).at(16, 16)[1]};
+    };
+    EXPECT_EQ(middle(".png", {}), 1.0);
+    // 0.96 of the light is left for the diffuse term, 1 / 100 of it shines: D = 1 / pi, F = 0.04.
+    const double lit = 0.96 / M_PI + 0.01 / M_PI;
+    EXPECT_NEAR(middle(".exr", {"--ambient", "0,0,0"}), lit, 1e-5);
+    EXPECT_NEAR(middle(".png", {"--ambient", "0,0,0", "--exposure", "0"}), srgb_of(lit), kByte);
+    EXPECT_NEAR(middle(".png", {"--ambient", "0,0,0", "--light-color", "0.5,0.5,0.5"}),
+                srgb_of(0.5 * M_PI * lit), kByte);
+    // No other view is brightened.
+    EXPECT_NEAR(middle(".png", {"--view", "diffuse"}), srgb_of(0.96 / M_PI), kByte);
 }
 
 TEST_F(Pictures, TheDefaultCameraSeesTheWholeSceneFromTheSide) {
@@ -356,6 +399,32 @@ TEST_F(Pictures, TheDefaultCameraSeesTheWholeSceneFromTheSide) {
         EXPECT_EQ(middle[3], 1.0f);
         const dvec3 direction = glm::normalize(dvec3(1.0, 0.5, 1.0));
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(middle[c], 0.5 * direction[c] + 0.5, 1e-4);
+    }
+}
+
+TEST_F(Pictures, AnySizeGivesTheSamePicture) {
+    const TemporaryFolder folder;
+    const auto draw_scaled = [&](double scale) {
+        const std::string name = fmt::format("scaled_{}.obj", scale);
+        {
+            std::ofstream obj(folder / name);
+            for (const dvec3 corner :
+                 {dvec3(-1.0, 0.0, -1.0), dvec3(1.0, 0.0, -1.0), dvec3(1.0, 0.0, 1.0),
+                  dvec3(-1.0, 0.0, 1.0), dvec3(0.3, 1.5, 0.1)}) {
+                obj << fmt::format("v {} {} {}\n", scale * corner.x, scale * corner.y,
+                                   scale * corner.z);
+            }
+            obj << "f 4 3 2 1\nf 1 5 4\nf 4 5 3\nf 3 5 2\nf 2 5 1\n";
+        }
+        return draw_scene(bake_scene(folder / name), ".exr",
+                          {"--size", "160x120", "--samples", "1"});
+    };
+    const Picture plain = draw_scaled(1.0);
+    int surfaces = 0;
+    for (std::size_t i = 3; i < plain.samples.size(); i += 4) surfaces += plain.samples[i] == 1.0f;
+    EXPECT_GT(surfaces, 2000);
+    for (const int power : {-40, -23, 25, 40}) {  // 1e-12 to 1e12
+        EXPECT_LE(largest_difference(plain, draw_scaled(std::exp2(power))), 1e-5) << power;
     }
 }
 

@@ -44,7 +44,9 @@ class RandomOptions {
         options.view = below(interop::kViewCount);
         maybe([&] { options.split = {side(), side()}; });
         options.divider = std::uniform_real_distribution(0.0f, 1.0f)(random_);
-        options.exposure = std::uniform_real_distribution(-64.0f, 64.0f)(random_);
+        maybe([&] {
+            options.exposure = std::uniform_real_distribution(-64.0f, 64.0f)(random_);
+        });
         maybe([&] {
             options.false_color.emplace();
             maybe([&] { options.false_color->range = range(); });

@@ -1,6 +1,7 @@
 // What the keys do to what the window shows.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
@@ -13,7 +14,8 @@ using cw2::CommandKind;
 using cw2::Input;
 using cw2::ViewerState;
 
-constexpr cw2::Bounds kBounds{{3.0f, -1.0f, 2.0f}, 8.0f};
+constexpr std::array kVertices{glm::vec3(3.0f, -1.0f, 10.0f), glm::vec3(3.0f, -1.0f, -6.0f)};
+constexpr cw2::Bounds kBounds{{3.0f, -1.0f, 2.0f}, 8.0f, kVertices};
 constexpr float kAspect = 1.5f;
 
 Input command(CommandKind kind, cw2::View view = 0) {
@@ -46,7 +48,8 @@ struct Viewer {
 };
 
 glm::vec3 light_after(double seconds) {
-    return cw2::orbit(cw2::default_light_position(kBounds), kBounds.center, seconds);
+    const cw2::Camera camera = Viewer().camera();
+    return cw2::orbit(cw2::default_light_position(kBounds, camera), kBounds.center, seconds);
 }
 
 /// How far the camera goes in one second of `steps` equal frames; the first one counts little.
