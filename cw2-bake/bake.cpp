@@ -30,6 +30,7 @@ namespace bake {
 namespace {
 
 using mesh_format::kNoTexture;
+using mesh_format::MapUse;
 using mesh_format::MaterialRecord;
 using mesh_format::StringRef;
 using mesh_format::TextureRecord;
@@ -65,9 +66,7 @@ std::vector<UvBudget> uv_budgets(const TextureSet& textures) {
     for (const MaterialTextures& material : textures.materials) {
         UvBudget budget;
         std::uint32_t longest = 0;
-        for (const std::uint32_t index :
-             {material.base_color, material.roughness, material.metalness, material.normal,
-              material.alpha_mask}) {
+        for (const std::uint32_t index : material.textures.values) {
             if (index == kNoTexture) continue;
             const Texture& texture = textures.textures[index];
             longest = std::max({longest, texture.width, texture.height});
@@ -100,19 +99,20 @@ MaterialRecord material_record(const SourceMaterial& source, const MaterialTextu
     record.name = name;
     for (int channel = 0; channel < 3; ++channel) {
         record.base_color[channel] = source.base_color[channel];
+        record.emission[channel] = source.emission[channel];
     }
     record.roughness = textures.roughness_holds_factor ? 1.0f : source.roughness;
     record.metalness = source.metalness;
     record.alpha_cutoff = source.alpha_cutoff;
     record.normal_scale = source.normal_scale;
-    if (textures.alpha_mask != kNoTexture) record.flags |= mesh_format::kAlphaMask;
+    record.opacity = source.opacity;
+    if (textures.textures[MapUse::alpha_mask] != kNoTexture)
+        record.flags |= mesh_format::kAlphaMask;
     if (source.cull_back) record.flags |= mesh_format::kCullBack;
     if (source.flip_back_normals) record.flags |= mesh_format::kFlipBackNormals;
-    record.base_color_texture = textures.base_color;
-    record.roughness_texture = textures.roughness;
-    record.metalness_texture = textures.metalness;
-    record.normal_texture = textures.normal;
-    record.alpha_mask_texture = textures.alpha_mask;
+    if (source.unlit) record.flags |= mesh_format::kUnlit;
+    if (source.blend) record.flags |= mesh_format::kBlend;
+    record.textures = textures.textures;
     return record;
 }
 
@@ -142,8 +142,9 @@ Tables make_tables(const std::vector<SourceMaterial>& materials, const TextureSe
     return tables;
 }
 
-/// Where the source wants to be seen from, and lit from.
+/// Where the scene lies, and where the source wants it to be seen and lit from.
 void add_start(const SourceScene& source, mesh_format::SceneRecord& record) {
+    for (int axis = 0; axis < 3; ++axis) record.origin[axis] = source.origin[axis];
     const auto store = [](const glm::vec3& from, float(&to)[3]) {
         for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
     };

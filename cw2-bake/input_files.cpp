@@ -52,12 +52,8 @@ std::vector<fs::path> input_files(const SourceScene& scene) {
     };
     for (const fs::path& file : scene.files) add(file);
     for (const SourceMaterial& material : scene.materials) {
-        add_image(material.base_color_map);
-        add_image(material.roughness_map);
-        add_image(material.metalness_map);
-        add_image(material.normal_map);
+        for (const auto& map : material.maps.values) add_image(map);
         if (material.bump_map) add_image(material.bump_map->map);
-        add_image(material.alpha_map);
     }
     return files;
 }

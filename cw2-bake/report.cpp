@@ -14,6 +14,7 @@ namespace {
 using common::quoted_text;
 using mesh_format::Document;
 using mesh_format::FrameForm;
+using mesh_format::MapUse;
 using mesh_format::MaterialRecord;
 using mesh_format::MeshRecord;
 using mesh_format::PositionForm;
@@ -75,7 +76,7 @@ Counts count(const Document& document) {
     for (const MeshRecord& mesh : document.meshes) {
         counts.vertices += mesh.vertex_count;
         counts.triangles += mesh.index_count / 3;
-        if (mesh.uv_form == UvForm::f32 && mesh.position_form == PositionForm::quantised) {
+        if (mesh.forms.uv == UvForm::f32 && mesh.forms.position == PositionForm::quantised) {
             ++counts.wide_meshes;
         }
     }
@@ -120,8 +121,8 @@ void list_meshes(const Document& document, std::string& out) {
             "mesh {}: {} vertices, {} triangles in {} chunks, material {}, position {}, frame {}, "
             "uv {}\n",
             i, grouped(mesh.vertex_count), grouped(mesh.index_count / 3), mesh.chunk_count,
-            mesh.material, name_of(mesh.position_form), name_of(mesh.frame_form),
-            name_of(mesh.uv_form));
+            mesh.material, name_of(mesh.forms.position), name_of(mesh.forms.frame),
+            name_of(mesh.forms.uv));
     }
 }
 
@@ -144,11 +145,8 @@ void list_materials(const Document& document, std::string& out) {
         }
         if (material.flags & mesh_format::kCullBack) out += ", seen from the front";
         if (material.flags & mesh_format::kFlipBackNormals) out += ", lit on both sides";
-        texture("base colour", material.base_color_texture);
-        texture("roughness", material.roughness_texture);
-        texture("metalness", material.metalness_texture);
-        texture("normal", material.normal_texture);
-        texture("alpha mask", material.alpha_mask_texture);
+        for (std::size_t use = 0; use < mesh_format::kMapUseCount; ++use)
+            texture(mesh_format::kMaps.values[use].name, material.textures.values[use]);
         out += '\n';
     }
 }
@@ -277,7 +275,7 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
             "\"position\": \"{}\", "
             "\"frame\": \"{}\", \"uv\": \"{}\"}}",
             mesh.vertex_count, mesh.index_count / 3, mesh.chunk_count, mesh.material,
-            name_of(mesh.position_form), name_of(mesh.frame_form), name_of(mesh.uv_form));
+            name_of(mesh.forms.position), name_of(mesh.forms.frame), name_of(mesh.forms.uv));
     });
     const std::string materials =
         json_array(document.materials, [&](const MaterialRecord& material) {
@@ -292,9 +290,11 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
                 material.metalness, material.normal_scale,
                 (material.flags & mesh_format::kCullBack) != 0,
                 (material.flags & mesh_format::kAlphaMask) != 0,
-                json_texture(material.base_color_texture), json_texture(material.roughness_texture),
-                json_texture(material.metalness_texture), json_texture(material.normal_texture),
-                json_texture(material.alpha_mask_texture));
+                json_texture(material.textures[MapUse::base_color]),
+                json_texture(material.textures[MapUse::roughness]),
+                json_texture(material.textures[MapUse::metalness]),
+                json_texture(material.textures[MapUse::normal]),
+                json_texture(material.textures[MapUse::alpha_mask]));
         });
     const std::string textures = json_array(document.textures, [&](const TextureRecord& texture) {
         return fmt::format(

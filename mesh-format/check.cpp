@@ -35,6 +35,8 @@ bool positive_power_of_two(float value) {
 }
 
 void check_scene(const Checker& check, const SceneRecord& scene) {
+    check.require(std::ranges::all_of(scene.origin, [](double x) { return std::isfinite(x); }),
+                  "the scene's origin is not finite");
     check.require(ordered(scene.bounds_min, scene.bounds_max),
                   "the scene's bounding box is invalid");
     check.require(std::isfinite(scene.radius) && scene.radius >= 0.0f,
@@ -56,7 +58,7 @@ void check_scene(const Checker& check, const SceneRecord& scene) {
 }
 
 std::uint64_t vertex_bytes(const MeshRecord& mesh) {
-    const VertexLayout layout = vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+    const VertexLayout layout = vertex_layout(mesh.forms);
     return std::uint64_t{mesh.vertex_count} * layout.stride;
 }
 
@@ -66,8 +68,8 @@ void check_mesh(const Checker& check, const Document& document, std::size_t i) {
         check.require(condition, "mesh", i, what);
     };
     require(mesh.material < document.materials.size(), "its material does not exist");
-    require(mesh.position_form <= PositionForm::f32 && mesh.frame_form <= FrameForm::f32 &&
-                mesh.uv_form <= UvForm::f32,
+    require(mesh.forms.position <= PositionForm::f32 && mesh.forms.frame <= FrameForm::f32 &&
+                mesh.forms.uv <= UvForm::f32 && mesh.forms.color <= ColorForm::rgba8,
             "unknown vertex form");
     require(mesh.vertex_count > 0 && mesh.vertex_count <= kMaxMeshVertices,
             "vertex count out of range");
@@ -80,7 +82,7 @@ void check_mesh(const Checker& check, const Document& document, std::size_t i) {
     for (const std::int32_t origin : mesh.origin) {
         require(origin > -(1 << 24) && origin < (1 << 24) - 65'535, "its origin is out of range");
     }
-    require(mesh.position_form == PositionForm::f32 || document.scene.position_step > 0.0f,
+    require(mesh.forms.position == PositionForm::f32 || document.scene.position_step > 0.0f,
             "the scene's position step is missing");
     require(all_finite(mesh.uv_origin) && all_finite(mesh.uv_step), "its UV range is not finite");
     require(ordered(mesh.bounds_min, mesh.bounds_max), "its bounding box is invalid");
@@ -89,8 +91,7 @@ void check_mesh(const Checker& check, const Document& document, std::size_t i) {
 /// Whether `count` floats are finite at `offset` in each of the mesh's vertices.
 bool floats_finite(const Document& document, const MeshRecord& mesh, std::uint32_t offset,
                    std::uint32_t count) {
-    const std::uint32_t stride =
-        vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
+    const std::uint32_t stride = vertex_layout(mesh.forms).stride;
     const std::byte* vertex = document.vertices.data() + mesh.vertex_offset + offset;
     constexpr std::uint32_t kExponent = 0x7F80'0000;  // all ones in an infinity and in a NaN
     bool finite = true;
@@ -106,14 +107,14 @@ bool floats_finite(const Document& document, const MeshRecord& mesh, std::uint32
 
 void check_vertices(const Checker& check, const Document& document, std::size_t i) {
     const MeshRecord& mesh = document.meshes[i];
-    const VertexLayout layout = vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+    const VertexLayout layout = vertex_layout(mesh.forms);
     const auto require = [&](bool is_f32, std::uint32_t offset, std::uint32_t count,
                              const char* what) {
         check.require(!is_f32 || floats_finite(document, mesh, offset, count), "mesh", i, what);
     };
-    require(mesh.position_form == PositionForm::f32, 0, 3, "a position is not finite");
-    require(mesh.frame_form == FrameForm::f32, layout.frame_offset, 4, "a frame is not finite");
-    require(mesh.uv_form == UvForm::f32, layout.uv_offset, 2, "a UV is not finite");
+    require(mesh.forms.position == PositionForm::f32, 0, 3, "a position is not finite");
+    require(mesh.forms.frame == FrameForm::f32, layout.frame_offset, 4, "a frame is not finite");
+    require(mesh.forms.uv == UvForm::f32, layout.uv_offset, 2, "a UV is not finite");
 }
 
 void check_indices(const Checker& check, const Document& document, std::size_t i) {
@@ -159,7 +160,14 @@ void check_material(const Checker& check, const Document& document, std::size_t 
                 in_unit_interval(material.alpha_cutoff),
             "a factor lies outside [0, 1]");
     require(std::isfinite(material.normal_scale), "its normal scale is not finite");
-    require((material.flags & ~std::uint32_t{kAlphaMask | kCullBack | kFlipBackNormals}) == 0,
+    require(std::ranges::all_of(material.emission,
+                                [](float e) { return e >= 0.0f && std::isfinite(e); }),
+            "its emission is negative or not finite");
+    require(in_unit_interval(material.opacity) &&
+                (material.opacity == 1.0f || (material.flags & kBlend) != 0),
+            "its opacity is invalid");
+    require((material.flags &
+             ~std::uint32_t{kAlphaMask | kCullBack | kFlipBackNormals | kUnlit | kBlend}) == 0,
             "unknown flags");
     const auto require_texture = [&](std::uint32_t texture, TextureFormat plain,
                                      TextureFormat blocks) {
@@ -168,12 +176,9 @@ void check_material(const Checker& check, const Document& document, std::size_t 
         const TextureFormat format = document.textures[texture].format;
         require(format == plain || format == blocks, "a texture's format does not fit its use");
     };
-    require_texture(material.base_color_texture, TextureFormat::rgba8_srgb,
-                    TextureFormat::bc1_srgb);
-    require_texture(material.normal_texture, TextureFormat::rgba8_unorm, TextureFormat::bc5_unorm);
-    for (const std::uint32_t texture :
-         {material.roughness_texture, material.metalness_texture, material.alpha_mask_texture}) {
-        require_texture(texture, TextureFormat::r8_unorm, TextureFormat::bc4_unorm);
+    for (std::size_t use = 0; use < kMapUseCount; ++use) {
+        require_texture(material.textures.values[use], kMaps.values[use].plain,
+                        kMaps.values[use].in_blocks);
     }
 }
 

@@ -41,8 +41,7 @@ std::vector<unsigned char> unwrap(Bytes frame, std::size_t largest, bool& sound)
 }
 
 bool decode_vertices(const MeshRecord& mesh, Bytes part, std::byte* out) {
-    const std::size_t stride =
-        vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
+    const std::size_t stride = vertex_layout(mesh.forms).stride;
     const std::size_t padded = (stride + 3) / 4 * 4;
     bool sound = true;
     const auto stream =

@@ -24,6 +24,7 @@
 
 #include <array>
 #include <bit>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -33,7 +34,7 @@ namespace mesh_format {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 inline constexpr std::array<char, 8> kMagic{'C', 'W', '2', 'M', 'E', 'S', 'H', '\0'};
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 /// A mesh's vertices are addressed by 16-bit indices.
 inline constexpr std::uint32_t kMaxMeshVertices = 65'536;
@@ -79,8 +80,7 @@ struct StringRef {
     std::uint32_t length;
 };
 
-/// How a vertex holds its position. Each mesh says in which form its vertices hold position, frame
-/// and UV; vertex_layout() says where.
+/// How a vertex holds its position.
 enum class PositionForm : std::uint8_t {
     quantised,  ///< 3 x uint16 on the scene's lattice: step * (mesh.origin + q), exact in float
     f32,        ///< 3 x float
@@ -100,7 +100,24 @@ enum class UvForm : std::uint8_t {
     f32,        ///< 2 x float
 };
 
+/// How a vertex holds its colour, which multiplies the base colour.
+enum class ColorForm : std::uint8_t {
+    none,   ///< not at all: white
+    rgba8,  ///< 4 x uint8: red, green and blue sRGB-encoded, alpha linear
+};
+
+/// How the vertices of a mesh hold what they hold; vertex_layout() says where.
+struct VertexForms {
+    PositionForm position;
+    FrameForm frame;
+    UvForm uv;
+    ColorForm color;
+    auto operator<=>(const VertexForms&) const = default;
+};
+
+/// All positions in the file, those of camera and light included, are relative to `origin`.
 struct SceneRecord {
+    double origin[3];            ///< in the source's coordinates, scene units
     std::uint64_t vertex_bytes;  ///< size of the section vertices, decoded
     std::uint64_t index_count;   ///< of the section indices, decoded
     float bounds_min[3];         ///< bounding box of all positions as decoded, scene units
@@ -127,10 +144,7 @@ enum SceneFlags : std::uint32_t {
 
 struct MeshRecord {
     std::uint32_t material;
-    PositionForm position_form;
-    FrameForm frame_form;
-    UvForm uv_form;
-    std::uint8_t reserved;  ///< 0
+    VertexForms forms;
     std::uint32_t vertex_count;
     std::uint32_t index_count;    ///< a multiple of 3
     std::uint64_t vertex_offset;  ///< bytes into the vertices section, a multiple of 4
@@ -161,7 +175,41 @@ enum MaterialFlags : std::uint32_t {
     kAlphaMask = 1,        ///< drawn by the alpha-mask pipeline
     kCullBack = 2,         ///< back faces are not drawn; from OBJ: never set
     kFlipBackNormals = 4,  ///< normals of back faces are turned to the viewer; from OBJ: never set
+    kUnlit = 8,            ///< shows its base colour whatever the light
+    kBlend = 16,           ///< the source blends it, by MaterialRecord::opacity; drawn opaque
 };
+
+/// What a material's textures are for.
+enum class MapUse : std::uint32_t {
+    base_color,
+    roughness,
+    metalness,
+    normal,
+    alpha_mask,
+    emission,
+    count
+};
+inline constexpr std::size_t kMapUseCount = static_cast<std::size_t>(MapUse::count);
+
+/// One T for each use.
+template <typename T>
+struct PerMap {
+    T values[kMapUseCount];
+
+    constexpr T& operator[](MapUse use) { return values[static_cast<std::size_t>(use)]; }
+    constexpr const T& operator[](MapUse use) const {
+        return values[static_cast<std::size_t>(use)];
+    }
+    bool operator==(const PerMap&) const = default;
+};
+
+/// `value` for every use.
+template <typename T>
+constexpr PerMap<T> per_map(const T& value) {
+    PerMap<T> result{};
+    for (T& each : result.values) each = value;
+    return result;
+}
 
 /// Factors multiply their texture's sample; an absent texture counts as 1 (normal: (0, 0, 1)).
 struct MaterialRecord {
@@ -171,13 +219,13 @@ struct MaterialRecord {
     float metalness;      ///< [0, 1]
     float alpha_cutoff;   ///< a fragment whose mask is below this is discarded
     float normal_scale;   ///< multiplies x and y of what the normal texture holds
+    /// Linear, not negative: what is emitted, over the light that leaves white paper facing a
+    /// light of colour 1.
+    float emission[3];
+    float opacity;        ///< [0, 1]; below 1 only with kBlend
     std::uint32_t flags;  ///< MaterialFlags
-    /// Indices into the textures section, or kNoTexture, and the formats that fit.
-    std::uint32_t base_color_texture;  ///< rgba8_srgb, bc1_srgb
-    std::uint32_t roughness_texture;   ///< r8_unorm, bc4_unorm
-    std::uint32_t metalness_texture;   ///< the same
-    std::uint32_t normal_texture;      ///< rgba8_unorm, bc5_unorm
-    std::uint32_t alpha_mask_texture;  ///< r8_unorm, bc4_unorm
+    /// Indices into the textures section, or kNoTexture; kMaps has the formats that fit.
+    PerMap<std::uint32_t> textures;
 };
 
 /// The blocks are those of the Khronos Data Format Specification 1.3, 4 x 4 texels each. A normal
@@ -190,6 +238,21 @@ enum class TextureFormat : std::uint32_t {
     bc4_unorm,  ///< red
     bc5_unorm,  ///< red and green
 };
+
+/// What is the same for all textures of one use.
+struct MapInfo {
+    const char* name;         ///< for people
+    TextureFormat plain;      ///< the format of its textures
+    TextureFormat in_blocks;  ///< the same, in blocks
+};
+inline constexpr PerMap<MapInfo> kMaps{{
+    {"base colour", TextureFormat::rgba8_srgb, TextureFormat::bc1_srgb},
+    {"roughness", TextureFormat::r8_unorm, TextureFormat::bc4_unorm},
+    {"metalness", TextureFormat::r8_unorm, TextureFormat::bc4_unorm},
+    {"normal", TextureFormat::rgba8_unorm, TextureFormat::bc5_unorm},
+    {"alpha mask", TextureFormat::r8_unorm, TextureFormat::bc4_unorm},
+    {"emission", TextureFormat::rgba8_srgb, TextureFormat::bc1_srgb},
+}};
 
 enum TextureFlags : std::uint32_t {
     kClampToEdge = 1,  ///< otherwise repeat
@@ -234,9 +297,9 @@ inline constexpr float kExactPsnr = 100.0f;
 inline constexpr std::uint32_t kMaxTextureSize = 16'384;
 
 static_assert(sizeof(Section) == 24 && sizeof(Header) == 32 + 24 * kSectionCount);
-static_assert(sizeof(SceneRecord) == 120 && sizeof(MeshRecord) == 96);
+static_assert(sizeof(SceneRecord) == 144 && sizeof(MeshRecord) == 96);
 static_assert(sizeof(ChunkRecord) == 40);
-static_assert(sizeof(MaterialRecord) == 60 && sizeof(TextureRecord) == 56);
+static_assert(sizeof(MaterialRecord) == 80 && sizeof(TextureRecord) == 56);
 static_assert(sizeof(SourceRecord) == 32);
 static_assert(std::is_trivially_copyable_v<Header> && std::is_trivially_copyable_v<MeshRecord>);
 
@@ -249,32 +312,39 @@ constexpr std::uint32_t frame_bytes(FrameForm form) {
 constexpr std::uint32_t uv_bytes(UvForm form) {
     return form == UvForm::quantised ? 4 : 8;
 }
+constexpr std::uint32_t color_bytes(ColorForm form) {
+    return form == ColorForm::none ? 0 : 4;
+}
 
-/// Where a vertex's parts lie, in bytes. Position, frame and UV follow each other; a part of 32-bit
-/// components starts at a multiple of 4.
+/// Where a vertex's parts lie, in bytes. Position, frame, UV and colour follow each other; a part
+/// of 32-bit components starts at a multiple of 4.
 struct VertexLayout {
     std::uint32_t frame_offset;  ///< the position is at 0
     std::uint32_t uv_offset;
+    std::uint32_t color_offset;
     std::uint32_t stride;  ///< 16 in the default forms
     bool has_gaps;         ///< some bytes belong to no part; they are 0
 };
 
-constexpr VertexLayout vertex_layout(PositionForm position, FrameForm frame, UvForm uv) {
+constexpr VertexLayout vertex_layout(const VertexForms& forms) {
     const auto align = [](std::uint32_t offset, bool wide) {
         return wide ? (offset + 3) / 4 * 4 : offset;
     };
-    const bool wide_frame = frame == FrameForm::f32;
-    const bool wide_uv = uv == UvForm::f32;
-    const bool wide = position == PositionForm::f32 || wide_frame || wide_uv;
+    const bool wide_frame = forms.frame == FrameForm::f32;
+    const bool wide_uv = forms.uv == UvForm::f32;
+    const bool wide = forms.position == PositionForm::f32 || wide_frame || wide_uv;
     VertexLayout layout{};
-    layout.frame_offset = align(position_bytes(position), wide_frame);
-    layout.uv_offset = align(layout.frame_offset + frame_bytes(frame), wide_uv);
-    layout.stride = align(layout.uv_offset + uv_bytes(uv), wide);
-    layout.has_gaps = layout.stride != position_bytes(position) + frame_bytes(frame) + uv_bytes(uv);
+    layout.frame_offset = align(position_bytes(forms.position), wide_frame);
+    layout.uv_offset = align(layout.frame_offset + frame_bytes(forms.frame), wide_uv);
+    layout.color_offset = layout.uv_offset + uv_bytes(forms.uv);
+    layout.stride = align(layout.color_offset + color_bytes(forms.color), wide);
+    layout.has_gaps = layout.stride != position_bytes(forms.position) + frame_bytes(forms.frame) +
+                                           uv_bytes(forms.uv) + color_bytes(forms.color);
     return layout;
 }
-static_assert(vertex_layout(PositionForm::quantised, FrameForm::quat48, UvForm::quantised).stride ==
-              16);
+static_assert(vertex_layout({PositionForm::quantised, FrameForm::quat48, UvForm::quantised,
+                             ColorForm::none})
+                  .stride == 16);
 
 /// Texels along each side of a block; formats without blocks count as blocks of one texel.
 constexpr std::uint32_t block_extent(TextureFormat format) {

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "mesh-format/layout.h"
+
 namespace bake {
 
 inline constexpr std::uint32_t kAbsent = 0xFFFF'FFFF;
@@ -59,16 +61,18 @@ struct SourceMaterial {
     float roughness = 1.0f;      ///< [0, 1], the alpha of the Blinn-Phong distribution
     float metalness = 0.0f;      ///< [0, 1]
     float alpha_cutoff = 0.5f;
-    float normal_scale = 1.0f;  ///< multiplies x and y of the vectors in normal_map
+    float normal_scale = 1.0f;  ///< multiplies x and y of the vectors in the map of normals
     bool cull_back = false;
-    bool flip_back_normals = false;            ///< a back face is lit from behind
-    bool base_color_alpha_is_mask = true;      ///< where there is no alpha_map
-    std::optional<TextureMap> base_color_map;  ///< sRGB
-    std::optional<TextureMap> roughness_map;
-    std::optional<TextureMap> metalness_map;
-    std::optional<TextureMap> normal_map;  ///< tangent space, green up along +v
-    std::optional<BumpMap> bump_map;       ///< used where there is no normal_map
-    std::optional<TextureMap> alpha_map;   ///< else the alpha of base_color_map may mask
+    bool flip_back_normals = false;        ///< a back face is lit from behind
+    bool base_color_alpha_is_mask = true;  ///< where there is no map of the mask
+    glm::vec3 emission{0.0f};              ///< linear, as mesh_format::MaterialRecord has it
+    bool unlit = false;                    ///< shows its base colour whatever the light
+    bool blend = false;                    ///< the source blends it, by `opacity`
+    float opacity = 1.0f;                  ///< [0, 1]
+    /// By mesh_format::MapUse. Base colour and emission are sRGB; normals are in tangent space,
+    /// green up along +v; without an alpha mask the alpha of the base colour may mask.
+    mesh_format::PerMap<std::optional<TextureMap>> maps{};
+    std::optional<BumpMap> bump_map;  ///< used where there is no map of normals
 };
 
 /// What a viewer starts with, if the source says it.
@@ -86,6 +90,9 @@ struct SourceLight {
 /// image. Every number is finite, every index in range, there is at least one triangle, and no
 /// component is -0 (so that equality of bits is equality of values).
 struct SourceScene {
+    /// Positions, those of camera and light included, are relative to it; in the coordinates of the
+    /// source.
+    glm::dvec3 origin{0.0};
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;  ///< unit length where a corner refers to it
     std::vector<glm::vec2> uvs;
@@ -96,6 +103,9 @@ struct SourceScene {
     /// One a corner as tangents.h describes them, or zero where the source gives none; empty if it
     /// gives none at all.
     std::vector<glm::vec4> tangents;
+    /// One a corner, which multiplies the base colour: red in the lowest byte, green, blue, sRGB-
+    /// encoded, and linear alpha. Empty if the source gives none at all.
+    std::vector<std::uint32_t> colors;
     std::vector<SourceMaterial> materials;
     std::optional<SourceCamera> camera;
     std::optional<SourceLight> light;

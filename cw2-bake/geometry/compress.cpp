@@ -29,8 +29,7 @@ Bytes zstd_frame(std::span<const unsigned char> stream) {
 }
 
 Bytes encode_vertices(const PackedGeometry& geometry, const MeshRecord& mesh) {
-    const std::size_t stride =
-        mesh_format::vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
+    const std::size_t stride = mesh_format::vertex_layout(mesh.forms).stride;
     const std::size_t padded = (stride + 3) / 4 * 4;
     Bytes vertices(mesh.vertex_count * padded);
     for (std::size_t i = 0; i < mesh.vertex_count; ++i) {

@@ -16,6 +16,7 @@ namespace bake {
 
 namespace {
 
+using mesh_format::ColorForm;
 using mesh_format::FrameForm;
 using mesh_format::MeshRecord;
 using mesh_format::PositionForm;
@@ -80,7 +81,7 @@ struct Errors {
 };
 
 mesh_format::VertexLayout layout_of(const MeshRecord& record) {
-    return mesh_format::vertex_layout(record.position_form, record.frame_form, record.uv_form);
+    return mesh_format::vertex_layout(record.forms);
 }
 
 /// Packs the vertices of one mesh.
@@ -89,8 +90,9 @@ class MeshPacker {
     MeshPacker(const FramedScene& scene, const ChunkedMesh& mesh, const UvBudget& budget,
                double step, MeshRecord& record)
         : scene_(scene), mesh_(mesh), step_(step), texels_(budget.texels), record_(record) {
-        if (record.position_form == PositionForm::quantised) choose_position_origin();
+        if (record.forms.position == PositionForm::quantised) choose_position_origin();
         choose_uv_lattice(budget);
+        if (is_colored()) record.forms.color = ColorForm::rgba8;
         set_bounds();
         layout_ = layout_of(record);
     }
@@ -108,6 +110,9 @@ class MeshPacker {
                 __builtin_prefetch(&scene_.framed.vertices[mesh_.vertices[v]]);
             gather(std::span(mesh_.vertices).subspan(begin, count), values);
             errors.add(pack_batch(values, count, out));
+            if (record_.forms.color != ColorForm::none)
+                pack_colors(std::span(mesh_.vertices).subspan(begin, count),
+                            out + layout_.color_offset);
             errors.add({.square_radius = largest_square_distance(values.position, center)});
             out += count * layout_.stride;
         }
@@ -143,9 +148,25 @@ class MeshPacker {
         return errors;
     }
 
+    /// Whether any vertex is not white.
+    bool is_colored() const {
+        constexpr std::uint32_t kWhite = 0xFFFF'FFFF;
+        const RawVector<std::uint32_t>& colors = scene_.framed.colors;
+        return !colors.empty() && std::ranges::any_of(mesh_.vertices, [&](std::uint32_t vertex) {
+            return colors[vertex] != kWhite;
+        });
+    }
+
+    void pack_colors(std::span<const std::uint32_t> vertices, std::byte* out) const {
+        for (const std::uint32_t vertex : vertices) {
+            std::memcpy(out, &scene_.framed.colors[vertex], sizeof(std::uint32_t));
+            out += layout_.stride;
+        }
+    }
+
     Errors pack_frames(const Values& values, std::size_t count, std::byte* out) const {
         Batch<double> degrees;
-        mesh_format::pack_frames(record_.frame_form, std::span(values.frame).first(count), out,
+        mesh_format::pack_frames(record_.forms.frame, std::span(values.frame).first(count), out,
                                  layout_.stride, degrees.data());
         Errors errors;
         for (std::size_t i = 0; i < count; ++i) {
@@ -174,7 +195,7 @@ class MeshPacker {
 
     /// Of the decoded positions: rounding keeps their order.
     void set_bounds() {
-        const bool exact = record_.position_form == PositionForm::f32;
+        const bool exact = record_.forms.position == PositionForm::f32;
         const auto& [low, high] = mesh_.positions;
         for (int axis = 0; axis < 3; ++axis) {
             record_.bounds_min[axis] = exact ? low[axis] : decoded(lattice(low, axis));
@@ -194,9 +215,9 @@ class MeshPacker {
             record_.uv_step[axis] = static_cast<float>(step);
             record_.uv_origin[axis] = static_cast<float>(std::round(first / step) * step);
             uv_axes_[axis] = {shift[axis], record_.uv_origin[axis], step};
-            if (step > budget.largest_step()) record_.uv_form = UvForm::f32;
+            if (step > budget.largest_step()) record_.forms.uv = UvForm::f32;
         }
-        if (record_.uv_form == UvForm::f32) {
+        if (record_.forms.uv == UvForm::f32) {
             for (int axis = 0; axis < 2; ++axis) {
                 record_.uv_origin[axis] = 0.0f;
                 record_.uv_step[axis] = 1.0f;
@@ -206,7 +227,7 @@ class MeshPacker {
 
     /// Returns the largest square distance to a decoded position.
     double pack_positions(const Values& values, std::size_t count, std::byte* out) const {
-        if (record_.position_form == PositionForm::f32) {
+        if (record_.forms.position == PositionForm::f32) {
             store(values.position, count, out);
             return 0.0;
         }
@@ -220,7 +241,7 @@ class MeshPacker {
 
     /// Returns the largest error in texels.
     double pack_uvs(const Values& values, std::size_t count, std::byte* out) const {
-        if (record_.uv_form == UvForm::f32) {
+        if (record_.forms.uv == UvForm::f32) {
             store(values.uv, count, out);
             return 0.0;
         }
@@ -358,9 +379,9 @@ PackedGeometry quantise(const FramedScene& scene, const ChunkedScene& chunked,
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         MeshRecord& record = geometry.meshes[i];
         record.material = meshes[i].material;
-        record.position_form = settings.position_form;
-        record.frame_form = settings.frame_form;
-        record.uv_form = exact ? UvForm::f32 : UvForm::quantised;
+        record.forms.position = settings.position_form;
+        record.forms.frame = settings.frame_form;
+        record.forms.uv = exact ? UvForm::f32 : UvForm::quantised;
         record.vertex_count = static_cast<std::uint32_t>(meshes[i].vertices.size());
         record.index_count = static_cast<std::uint32_t>(meshes[i].indices.size());
         packers.emplace_back(scene, meshes[i], materials[meshes[i].material], step, record);

@@ -57,6 +57,7 @@ class FramedBlock {
         tangents_.resize(count);
         vertex_.resize(count);
         vertices_.clear();
+        colors_.clear();
         for (const VertexSlots& vertex : slots_.vertices) {
             if (!make_plain_vertex(vertex)) make_vertex(vertex);
         }
@@ -67,6 +68,7 @@ class FramedBlock {
     /// Puts the vertices where number `first` is, and tells each corner its own's number.
     void store(std::uint32_t first, FramedTriangles& triangles) const {
         std::copy(vertices_.begin(), vertices_.end(), triangles.vertices.begin() + first);
+        std::copy(colors_.begin(), colors_.end(), triangles.colors.begin() + first);
         for (std::size_t slot = 0; slot < vertex_.size(); ++slot)
             triangles.indices[slots_.slots[slot].corner] = first + vertex_[slot];
     }
@@ -83,7 +85,8 @@ class FramedBlock {
     /// answers false.
     bool make_plain_vertex(const VertexSlots& vertex) {
         const std::uint32_t count = vertex.degenerate - vertex.first;
-        if (count == 0 || count > kFewSlots || !scene_.tangents.empty()) return false;
+        if (count == 0 || count > kFewSlots || !scene_.tangents.empty() || !scene_.colors.empty())
+            return false;
         std::uint32_t usable = 0;
         std::uint32_t preserving = 0;
         vec3 sum{0.0f};
@@ -201,14 +204,20 @@ class FramedBlock {
         }
     }
 
-    /// One framed vertex for each tangent.
+    /// One framed vertex for each tangent and colour.
     void split(const VertexSlots& vertex) {
         const std::size_t first = vertices_.size();
+        const bool colored = !scene_.colors.empty();
         for (std::uint32_t slot = vertex.first; slot < vertex.end; ++slot) {
+            const std::uint32_t color = colored ? scene_.colors[slots_.slots[slot].corner] : 0;
             std::size_t v = first;
-            while (v < vertices_.size() && vertices_[v].tangent != tangents_[slot]) ++v;
-            if (v == vertices_.size())
+            while (v < vertices_.size() &&
+                   (vertices_[v].tangent != tangents_[slot] || (colored && colors_[v] != color)))
+                ++v;
+            if (v == vertices_.size()) {
                 vertices_.push_back({slots_.slots[slot].own, tangents_[slot]});
+                if (colored) colors_.push_back(color);
+            }
             vertex_[slot] = static_cast<std::uint32_t>(v);
         }
     }
@@ -220,6 +229,7 @@ class FramedBlock {
     CornerSlots slots_;
     SlotLinks links_;
     std::vector<FramedVertex> vertices_;
+    std::vector<std::uint32_t> colors_;  // one a vertex; empty if the scene has none
     // Of each slot:
     Spokes spokes_;
     std::vector<std::uint32_t> group_;  // kNone if none reached it
@@ -239,6 +249,7 @@ FramedTriangles add_tangents(const SourceScene& scene) {
     FramedTriangles result;
     result.indices.resize(scene.corners.size());
     result.vertices.resize(scene.corners.size());  // at most; what is left over is never touched
+    if (!scene.colors.empty()) result.colors.resize(scene.corners.size());
 
     struct Work {
         FramedBlock* block;
@@ -283,6 +294,7 @@ FramedTriangles add_tangents(const SourceScene& scene) {
                                tbb::make_filter<Work, Work>(filter_mode::serial_in_order, number) &
                                tbb::make_filter<Work, void>(filter_mode::parallel, store));
     result.vertices.resize(next_vertex);
+    if (!scene.colors.empty()) result.colors.resize(next_vertex);
     return result;
 }
 

@@ -43,8 +43,7 @@ glm::vec<N, float> vector_of(const std::byte* bytes, bool words, const glm::vec<
 }
 
 Vertices vertices_of(const Document& document, const MeshRecord& mesh) {
-    const mesh_format::VertexLayout layout =
-        mesh_format::vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+    const mesh_format::VertexLayout layout = mesh_format::vertex_layout(mesh.forms);
     // Exact: the step is a power of two, and origins and words fit a float's 24 bits.
     const glm::vec3 step(document.scene.position_step);
     const glm::vec3 origin = step * glm::vec3(glm::make_vec3(mesh.origin));
@@ -53,14 +52,14 @@ Vertices vertices_of(const Document& document, const MeshRecord& mesh) {
         const std::byte* vertex =
             document.vertices.data() + mesh.vertex_offset + std::size_t{i} * layout.stride;
         const mesh_format::TangentFrame frame =
-            mesh_format::unpack_frame(mesh.frame_form, vertex + layout.frame_offset);
+            mesh_format::unpack_frame(mesh.forms.frame, vertex + layout.frame_offset);
         vertices.positions.push_back(
-            vector_of<3>(vertex, mesh.position_form == PositionForm::quantised, origin, step));
+            vector_of<3>(vertex, mesh.forms.position == PositionForm::quantised, origin, step));
         vertices.normals.emplace_back(frame.normal[0], frame.normal[1], frame.normal[2]);
         vertices.tangents.emplace_back(frame.tangent[0], frame.tangent[1], frame.tangent[2],
                                        frame.handedness);
         vertices.uvs.push_back(
-            vector_of<2>(vertex + layout.uv_offset, mesh.uv_form == UvForm::quantised,
+            vector_of<2>(vertex + layout.uv_offset, mesh.forms.uv == UvForm::quantised,
                          glm::make_vec2(mesh.uv_origin), glm::make_vec2(mesh.uv_step)));
     }
     return vertices;

@@ -18,6 +18,7 @@ namespace {
 
 using mesh_format::Document;
 using mesh_format::kNoTexture;
+using mesh_format::MapUse;
 using mesh_format::MaterialRecord;
 using mesh_format::TextureFormat;
 using mesh_format::TextureRecord;
@@ -171,12 +172,13 @@ GltfImages make_gltf_images(const Document& document, TexturePayloads payloads, 
         return entry->second;
     };
     for (const MaterialRecord& material : document.materials) {
+        const auto& textures = material.textures;
         const bool masked = material.flags & mesh_format::kAlphaMask;
-        const std::uint32_t mask = masked ? material.alpha_mask_texture : kNoTexture;
-        result.materials.push_back(
-            {add({Use::color, material.base_color_texture, mask}),
-             add({Use::metallic_roughness, material.roughness_texture, material.metalness_texture}),
-             add({Use::normal, material.normal_texture, kNoTexture})});
+        const std::uint32_t mask = masked ? textures[MapUse::alpha_mask] : kNoTexture;
+        result.materials.push_back({add({Use::color, textures[MapUse::base_color], mask}),
+                                    add({Use::metallic_roughness, textures[MapUse::roughness],
+                                         textures[MapUse::metalness]}),
+                                    add({Use::normal, textures[MapUse::normal], kNoTexture})});
     }
     result.images.resize(keys.size());
     tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {

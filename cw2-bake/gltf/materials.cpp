@@ -11,6 +11,8 @@
 namespace bake {
 namespace {
 
+using mesh_format::MapUse;
+
 double number_or(const tinygltf::Value& value, double fallback) {
     return value.IsNumber() ? value.GetNumberAsDouble() : fallback;
 }
@@ -137,12 +139,14 @@ GltfMaterial GltfMaterials::convert(int index) {
     const TextureUse color(surface.baseColorTexture);
     const TextureUse normal(material.normalTexture);
     const TextureUse rough(surface.metallicRoughnessTexture);
-    source.base_color_map = texture_map(color, place);
-    source.normal_map = texture_map(normal, place);
-    source.roughness_map = texture_map(rough, place);
-    source.metalness_map = source.roughness_map;
-    if (source.roughness_map) source.roughness_map->channel = Channel::g;
-    if (source.metalness_map) source.metalness_map->channel = Channel::b;
+    source.maps[MapUse::base_color] = texture_map(color, place);
+    source.maps[MapUse::normal] = texture_map(normal, place);
+    if (std::optional<TextureMap> map = texture_map(rough, place)) {
+        map->channel = Channel::g;
+        source.maps[MapUse::roughness] = map;
+        map->channel = Channel::b;
+        source.maps[MapUse::metalness] = map;
+    }
     take_mask(material, place, result);
 
     const TextureUse* chosen = nullptr;

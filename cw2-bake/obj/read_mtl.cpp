@@ -15,6 +15,8 @@
 namespace bake {
 namespace {
 
+using mesh_format::MapUse;
+
 /// An option of a texture statement: how many words follow it, and the number that changes nothing.
 struct Option {
     std::string_view name;
@@ -226,12 +228,12 @@ void MtlReader::statement(std::string_view keyword, std::string_view words) {
 SourceMaterial MtlReader::finish(const Statements& stated) {
     SourceMaterial material;
     material.name = stated.name;
-    material.base_color_map = stated.map_kd;
-    material.roughness_map = stated.map_pr;
-    material.metalness_map = stated.map_pm;
-    material.normal_map = stated.norm;
+    material.maps[MapUse::base_color] = stated.map_kd;
+    material.maps[MapUse::roughness] = stated.map_pr;
+    material.maps[MapUse::metalness] = stated.map_pm;
+    material.maps[MapUse::normal] = stated.norm;
+    material.maps[MapUse::alpha_mask] = stated.map_d;
     material.bump_map = stated.bump;
-    material.alpha_map = stated.map_d;
 
     if (stated.map_kd) {
         const bool black = stated.kd == glm::vec3{0.0f};

@@ -12,13 +12,9 @@ namespace bake {
 
 inline constexpr std::size_t kNoRequest = static_cast<std::size_t>(-1);
 
-/// The requests of one material; kNoRequest where it has no such map.
-struct MaterialRequests {
-    std::size_t surface = kNoRequest;
-    std::size_t roughness = kNoRequest;
-    std::size_t metalness = kNoRequest;
-    std::size_t normal = kNoRequest;
-};
+/// The requests of one material; kNoRequest where it has no such map. That of the base colour makes
+/// the alpha mask, too.
+using MaterialRequests = mesh_format::PerMap<std::size_t>;
 
 struct TexturePlan {
     std::vector<ImageRequest> requests;  ///< every different one, in order of first use

@@ -38,11 +38,7 @@ struct Texture {
 
 /// What one material samples: indices into TextureSet::textures, or mesh_format::kNoTexture.
 struct MaterialTextures {
-    std::uint32_t base_color = mesh_format::kNoTexture;
-    std::uint32_t roughness = mesh_format::kNoTexture;
-    std::uint32_t metalness = mesh_format::kNoTexture;
-    std::uint32_t normal = mesh_format::kNoTexture;
-    std::uint32_t alpha_mask = mesh_format::kNoTexture;
+    mesh_format::PerMap<std::uint32_t> textures = mesh_format::per_map(mesh_format::kNoTexture);
     bool roughness_holds_factor = false;  ///< the material's factor is in its texture already
 };
 

@@ -22,6 +22,8 @@
 namespace bake {
 namespace {
 
+using mesh_format::MapUse;
+
 /// The requests that read one image first, so that it is decoded once for all of them.
 struct Batch {
     std::filesystem::path file;
@@ -201,12 +203,12 @@ TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode 
         return request == kNoRequest ? Placed{} : placed[request];
     };
     for (const MaterialRequests& uses : plan.materials) {
-        set.materials.push_back({.base_color = at(uses.surface).texture,
-                                 .roughness = at(uses.roughness).texture,
-                                 .metalness = at(uses.metalness).texture,
-                                 .normal = at(uses.normal).texture,
-                                 .alpha_mask = at(uses.surface).alpha_mask,
-                                 .roughness_holds_factor = at(uses.roughness).holds_factor});
+        MaterialTextures material;
+        for (std::size_t use = 0; use < mesh_format::kMapUseCount; ++use)
+            material.textures.values[use] = at(uses.values[use]).texture;
+        material.textures[MapUse::alpha_mask] = at(uses[MapUse::base_color]).alpha_mask;
+        material.roughness_holds_factor = at(uses[MapUse::roughness]).holds_factor;
+        set.materials.push_back(material);
     }
     return set;
 }

@@ -79,9 +79,9 @@ struct VertexInput {
 
 /// Three 16-bit words are read as four, the fourth belonging to what follows in the vertex:
 /// three-component 16-bit formats are optional in Vulkan.
-VertexInput vertex_input(const VertexForms& forms) {
+VertexInput vertex_input(const mesh_format::VertexForms& forms) {
     using namespace mesh_format;
-    const VertexLayout layout = vertex_layout(forms.position, forms.frame, forms.uv);
+    const VertexLayout layout = vertex_layout(forms);
     const VkFormat position = forms.position == PositionForm::quantised
                                   ? VK_FORMAT_R16G16B16A16_UINT
                                   : VK_FORMAT_R32G32B32_UINT;

@@ -36,18 +36,10 @@ struct Layouts {
     PipelineLayout alpha_mask_pipeline;
 };
 
-/// How a mesh holds its vertices.
-struct VertexForms {
-    mesh_format::PositionForm position;
-    mesh_format::FrameForm frame;
-    mesh_format::UvForm uv;
-    auto operator<=>(const VertexForms&) const = default;
-};
-
 /// What a pipeline depends on beside the attachments.
 struct PipelineKey {
     Shading shading;
-    VertexForms forms;
+    mesh_format::VertexForms forms;
     Side side;
     bool roughness_map;  ///< false: the factor alone counts
     bool metalness_map;  ///< the same

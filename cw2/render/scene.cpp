@@ -20,6 +20,7 @@ namespace cw2 {
 namespace {
 
 using mesh_format::Document;
+using mesh_format::MapUse;
 using mesh_format::MaterialRecord;
 using mesh_format::MeshRecord;
 using mesh_format::TextureFormat;
@@ -121,8 +122,9 @@ Shading shading_of(const MaterialRecord& material) {
 }
 
 std::uint32_t normal_map_of(const Document& document, const MaterialRecord& material) {
-    if (material.normal_texture == mesh_format::kNoTexture) return interop::kNormalMapAbsent;
-    return document.textures[material.normal_texture].format == TextureFormat::bc5_unorm
+    if (material.textures[MapUse::normal] == mesh_format::kNoTexture)
+        return interop::kNormalMapAbsent;
+    return document.textures[material.textures[MapUse::normal]].format == TextureFormat::bc5_unorm
                ? interop::kNormalMapXy
                : interop::kNormalMapXyz;
 }
@@ -186,7 +188,7 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
                                .index_count = chunk.index_count});
         }
         draws_.push_back({.constants = constants_of(document, mesh, material),
-                          .forms = {mesh.position_form, mesh.frame_form, mesh.uv_form},
+                          .forms = mesh.forms,
                           .shading = shading_of(material),
                           .cull_back = (material.flags & mesh_format::kCullBack) != 0,
                           .material = sets[mesh.material],
@@ -253,11 +255,11 @@ std::vector<VkDescriptorSet> Scene::make_material_sets(const Device& device, con
 void Scene::write_material_set(const Device& device, VkDescriptorSet set,
                                const MaterialRecord& material) const {
     const std::array<std::pair<std::uint32_t, std::uint32_t>, 5> bindings{
-        {{interop::kBaseColorBinding, material.base_color_texture},
-         {interop::kRoughnessBinding, material.roughness_texture},
-         {interop::kMetalnessBinding, material.metalness_texture},
-         {interop::kNormalMapBinding, material.normal_texture},
-         {interop::kAlphaMaskBinding, material.alpha_mask_texture}}};
+        {{interop::kBaseColorBinding, material.textures[MapUse::base_color]},
+         {interop::kRoughnessBinding, material.textures[MapUse::roughness]},
+         {interop::kMetalnessBinding, material.textures[MapUse::metalness]},
+         {interop::kNormalMapBinding, material.textures[MapUse::normal]},
+         {interop::kAlphaMaskBinding, material.textures[MapUse::alpha_mask]}}};
     const std::size_t count = shading_of(material) == Shading::opaque ? 4 : 5;
     std::array<VkDescriptorImageInfo, 5> images;
     std::array<VkWriteDescriptorSet, 5> writes;

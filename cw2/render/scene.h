@@ -22,7 +22,7 @@ namespace cw2 {
 /// What the triangles of one mesh are drawn with.
 struct Draw {
     interop::DrawConstants constants;
-    VertexForms forms;
+    mesh_format::VertexForms forms;
     Shading shading;
     bool cull_back;
     VkDescriptorSet material;

@@ -26,16 +26,15 @@ using Triangle = std::array<Corner, 3>;
 std::vector<Triangle> triangles_of(const Document& document) {
     std::vector<Triangle> triangles;
     for (const MeshRecord& mesh : document.meshes) {
-        EXPECT_TRUE(mesh.position_form == PositionForm::f32 && mesh.uv_form == UvForm::f32);
-        const VertexLayout layout =
-            vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+        EXPECT_TRUE(mesh.forms.position == PositionForm::f32 && mesh.forms.uv == UvForm::f32);
+        const VertexLayout layout = vertex_layout(mesh.forms);
         const auto corner = [&](std::uint32_t i) {
             const std::byte* vertex = document.vertices.data() + mesh.vertex_offset +
                                       document.indices[mesh.first_index + i] * layout.stride;
             Corner result;
             std::memcpy(result.place.data(), vertex, 12);
             std::memcpy(result.place.data() + 3, vertex + layout.uv_offset, 8);
-            result.frame = unpack_frame(mesh.frame_form, vertex + layout.frame_offset);
+            result.frame = unpack_frame(mesh.forms.frame, vertex + layout.frame_offset);
             return result;
         };
         for (std::uint32_t i = 0; i < mesh.index_count; i += 3) {
@@ -132,10 +131,14 @@ TEST_F(Export, ComesBackAsItWas) {
         EXPECT_EQ(a.alpha_cutoff, b.alpha_cutoff);
         EXPECT_EQ(a.normal_scale, b.normal_scale);
         EXPECT_EQ(a.flags, b.flags);
-        EXPECT_EQ(texels(first, a.base_color_texture), texels(second, b.base_color_texture));
-        EXPECT_EQ(texels(first, a.roughness_texture), texels(second, b.roughness_texture));
-        EXPECT_EQ(texels(first, a.normal_texture), texels(second, b.normal_texture));
-        EXPECT_EQ(texels(first, a.alpha_mask_texture), texels(second, b.alpha_mask_texture));
+        EXPECT_EQ(texels(first, a.textures[MapUse::base_color]),
+                  texels(second, b.textures[MapUse::base_color]));
+        EXPECT_EQ(texels(first, a.textures[MapUse::roughness]),
+                  texels(second, b.textures[MapUse::roughness]));
+        EXPECT_EQ(texels(first, a.textures[MapUse::normal]),
+                  texels(second, b.textures[MapUse::normal]));
+        EXPECT_EQ(texels(first, a.textures[MapUse::alpha_mask]),
+                  texels(second, b.textures[MapUse::alpha_mask]));
     }
 }
 

@@ -11,6 +11,8 @@
 
 namespace {
 
+using mesh_format::MapUse;
+
 using bake::SourceMaterial;
 using bake::Texture;
 using mesh_format::kNoTexture;
@@ -45,13 +47,13 @@ Baked bake_all(const std::vector<SourceMaterial>& materials) {
 
 SourceMaterial with_color(const bake::TextureMap& map) {
     SourceMaterial material;
-    material.base_color_map = map;
+    material.maps[MapUse::base_color] = map;
     return material;
 }
 
 SourceMaterial with_roughness(const bake::TextureMap& map) {
     SourceMaterial material;
-    material.roughness_map = map;
+    material.maps[MapUse::roughness] = map;
     return material;
 }
 
@@ -75,7 +77,7 @@ TEST(ImageFiles, BytesOfLosslessFormatsArriveUnchanged) {
         write_image(folder / name, 8, 6, 3, rgb);
         const Baked baked = bake_all({with_color(map_of(folder / name))});
         ASSERT_TRUE(baked.warnings.empty()) << baked.warnings[0];
-        const std::uint32_t index = baked.set.materials[0].base_color;
+        const std::uint32_t index = baked.set.materials[0].textures[MapUse::base_color];
         EXPECT_EQ(baked.texture(index).name, name);
         EXPECT_EQ(baked.texture(index).format, TextureFormat::rgba8_srgb);
         EXPECT_EQ(baked.texture(index).width, 8u);
@@ -93,14 +95,14 @@ TEST(ImageFiles, GreyServesAsColourAndAsScalar) {
     const TemporaryFolder folder;
     write_image(folder / "grey.png", 4, 4, 1, grey);
     SourceMaterial material = with_color(map_of(folder / "grey.png"));
-    material.roughness_map = map_of(folder / "grey.png");
+    material.maps[MapUse::roughness] = map_of(folder / "grey.png");
     const Baked baked = bake_all({material});
     const bake::MaterialTextures& uses = baked.set.materials[0];
-    EXPECT_EQ(baked.texture(uses.roughness).format, TextureFormat::r8_unorm);
+    EXPECT_EQ(baked.texture(uses.textures[MapUse::roughness]).format, TextureFormat::r8_unorm);
     for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_EQ(baked.byte(uses.base_color, 2, 3, c), 43);
+        EXPECT_EQ(baked.byte(uses.textures[MapUse::base_color], 2, 3, c), 43);
     }
-    EXPECT_EQ(baked.byte(uses.roughness, 2, 3), 43);
+    EXPECT_EQ(baked.byte(uses.textures[MapUse::roughness], 2, 3), 43);
 }
 
 TEST(ImageFiles, SixteenBitsAreRounded) {
@@ -180,7 +182,8 @@ TEST(ImageFiles, ColourUnderLowAlphaIsNotPremultiplied) {
         });
         const Baked baked = bake_all({with_color(map_of(folder / name))});
         ASSERT_TRUE(baked.warnings.empty()) << baked.warnings[0];
-        EXPECT_EQ(baked.set.materials[0].alpha_mask, kNoTexture) << "nothing is below one half";
+        EXPECT_EQ(baked.set.materials[0].textures[MapUse::alpha_mask], kNoTexture)
+            << "nothing is below one half";
         EXPECT_EQ(baked.byte(0, 3, 5, 2), 203);
     }
 }
@@ -233,7 +236,7 @@ TEST(ImageFiles, EveryKindServesInBlocksAsItDoesWithout) {
                              "tall.jpg", "misnamed.jpg"}) {
         SCOPED_TRACE(name);
         SourceMaterial material = with_color(map_of(folder / name));
-        material.roughness_map = map_of(folder / name);
+        material.maps[MapUse::roughness] = map_of(folder / name);
         const Baked plain = bake_all({material});
         const bake::TextureSet blocks =
             bake::bake_textures({{material}}, bake::TextureMode::bc, {},
@@ -262,7 +265,7 @@ void expect_refused(const std::filesystem::path& path, const std::string& cause)
     EXPECT_EQ(in_blocks, 1u);
     EXPECT_TRUE(blocks.textures.empty());
     const Baked baked = bake_all({with_roughness(map_of(path, "lib/x.mtl:42"))});
-    EXPECT_EQ(baked.set.materials[0].roughness, kNoTexture);
+    EXPECT_EQ(baked.set.materials[0].textures[MapUse::roughness], kNoTexture);
     EXPECT_TRUE(baked.set.textures.empty());
     ASSERT_EQ(baked.warnings.size(), 1u);
     const std::string& line = baked.warnings[0];
@@ -341,9 +344,9 @@ TEST(BadImages, SizesBeyondTheLimitAreRefusedBeforeAnythingIsAllocated) {
 TEST(BadImages, OneWarningAnImageInOrderOfFirstUse) {
     const TemporaryFolder folder;
     SourceMaterial first = with_color(map_of(folder / "z.png", "a.mtl:2"));
-    first.metalness_map = map_of(folder / "a.png", "a.mtl:3");
+    first.maps[MapUse::metalness] = map_of(folder / "a.png", "a.mtl:3");
     SourceMaterial second = with_color(map_of(folder / "a.png", "a.mtl:7"));
-    second.roughness_map = map_of(folder / "z.png", "a.mtl:8");
+    second.maps[MapUse::roughness] = map_of(folder / "z.png", "a.mtl:8");
     const Baked baked = bake_all({first, second});
     ASSERT_EQ(baked.warnings.size(), 2u);
     EXPECT_EQ(baked.warnings[0].find("a.mtl:2: "), 0u);

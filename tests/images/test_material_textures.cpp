@@ -9,6 +9,8 @@
 
 namespace {
 
+using mesh_format::MapUse;
+
 using bake::Channel;
 using bake::MaterialTextures;
 using bake::SourceMaterial;
@@ -41,10 +43,10 @@ void write_pair(const std::filesystem::path& path, const std::vector<double>& le
 std::vector<int> mask_of(const std::optional<bake::TextureMap>& color,
                          const std::optional<bake::TextureMap>& alpha) {
     SourceMaterial material;
-    material.base_color_map = color;
-    material.alpha_map = alpha;
+    material.maps[MapUse::base_color] = color;
+    material.maps[MapUse::alpha_mask] = alpha;
     const TextureSet set = bake_quietly({material});
-    const std::uint32_t index = set.materials[0].alpha_mask;
+    const std::uint32_t index = set.materials[0].textures[MapUse::alpha_mask];
     return index == kNoTexture ? std::vector<int>()
                                : first_texels(set.textures[index], set.textures[index].width);
 }
@@ -78,9 +80,9 @@ TEST(AlphaMasks, LeaveTheColourOfHiddenTexelsOut) {
     const TemporaryFolder folder;
     write_pair(folder / "leaf.png", {0, 0, 0, 0}, {0.2, 0.8, 0.4, 1});
     SourceMaterial masked;
-    masked.base_color_map = map_of(folder / "leaf.png");
+    masked.maps[MapUse::base_color] = map_of(folder / "leaf.png");
     const TextureSet set = bake_quietly({masked});
-    const Texture& color = set.textures[set.materials[0].base_color];
+    const Texture& color = set.textures[set.materials[0].textures[MapUse::base_color]];
     EXPECT_EQ(color.width, 1u) << "one colour is left";
     EXPECT_EQ(std::to_integer<int>(color.payload[1]), 204);
 }
@@ -90,15 +92,15 @@ TEST(AlphaMasks, AColourWithAndWithoutAMaskIsTwoTextures) {
     write_pair(folder / "color.png", {0, 0, 0}, {0.2, 0.8, 0.4});
     write_pair(folder / "mask.png", {0}, {1});
     SourceMaterial plain;
-    plain.base_color_map = map_of(folder / "color.png");
+    plain.maps[MapUse::base_color] = map_of(folder / "color.png");
     SourceMaterial masked = plain;
-    masked.alpha_map = map_of(folder / "mask.png");
+    masked.maps[MapUse::alpha_mask] = map_of(folder / "mask.png");
     const TextureSet set = bake_quietly({plain, masked, plain});
     EXPECT_EQ(set.textures.size(), 3u);
-    EXPECT_EQ(set.materials[0].base_color, 0u);
-    EXPECT_EQ(set.materials[1].base_color, 1u);
-    EXPECT_EQ(set.materials[1].alpha_mask, 2u);
-    EXPECT_EQ(set.materials[2].base_color, 0u);
+    EXPECT_EQ(set.materials[0].textures[MapUse::base_color], 0u);
+    EXPECT_EQ(set.materials[1].textures[MapUse::base_color], 1u);
+    EXPECT_EQ(set.materials[1].textures[MapUse::alpha_mask], 2u);
+    EXPECT_EQ(set.materials[2].textures[MapUse::base_color], 0u);
     EXPECT_EQ(first_texels(set.textures[0], 2), (std::vector{0, 51}));
 }
 
@@ -107,11 +109,13 @@ TEST(AlphaMasks, WhereNothingIsShownTheColourStaysAsItIs) {
     write_pair(folder / "color.png", {0, 0, 0}, {0.2, 0.8, 0.4});
     write_pair(folder / "mask.png", {0.1}, {0.2});
     SourceMaterial material;
-    material.base_color_map = map_of(folder / "color.png");
-    material.alpha_map = map_of(folder / "mask.png");
+    material.maps[MapUse::base_color] = map_of(folder / "color.png");
+    material.maps[MapUse::alpha_mask] = map_of(folder / "mask.png");
     const TextureSet set = bake_quietly({material});
-    EXPECT_EQ(first_texels(set.textures[set.materials[0].base_color], 2), (std::vector{0, 51}));
-    EXPECT_EQ(first_texels(set.textures[set.materials[0].alpha_mask], 2), (std::vector{26, 51}));
+    EXPECT_EQ(first_texels(set.textures[set.materials[0].textures[MapUse::base_color]], 2),
+              (std::vector{0, 51}));
+    EXPECT_EQ(first_texels(set.textures[set.materials[0].textures[MapUse::alpha_mask]], 2),
+              (std::vector{26, 51}));
 }
 
 /// Heights that rise to the right and, faster, upwards.
@@ -159,12 +163,12 @@ TEST(NormalMaps, ThatAreGreyAreNamedAndIgnored) {
     const TemporaryFolder folder;
     write_hill(folder / "grey.png", 1);
     SourceMaterial material;
-    material.normal_map = map_of(folder / "grey.png", "b.mtl:9");
+    material.maps[MapUse::normal] = map_of(folder / "grey.png", "b.mtl:9");
     std::vector<std::string> warnings;
     const TextureSet set =
         bake::bake_textures(std::vector{material}, bake::TextureMode::lossless, {},
                             [&](const std::string& line) { warnings.push_back(line); }, {});
-    EXPECT_EQ(set.materials[0].normal, kNoTexture);
+    EXPECT_EQ(set.materials[0].textures[MapUse::normal], kNoTexture);
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(warnings[0].find("b.mtl:9: "), 0u);
     EXPECT_NE(warnings[0].find("grey"), std::string::npos);
@@ -177,12 +181,12 @@ TEST(NormalMaps, ThatAreFlatAreNone) {
     });
     write_image(folder / "level.png", 4, 4, 1, [](int, int) { return std::vector{0.7}; });
     SourceMaterial normals;
-    normals.normal_map = map_of(folder / "flat.png");
+    normals.maps[MapUse::normal] = map_of(folder / "flat.png");
     SourceMaterial bumps;
     bumps.bump_map = bake::BumpMap{map_of(folder / "level.png"), 3.0f};
     const TextureSet set = bake_quietly({normals, bumps});
     EXPECT_TRUE(set.textures.empty());
-    EXPECT_EQ(set.materials[1].normal, kNoTexture);
+    EXPECT_EQ(set.materials[1].textures[MapUse::normal], kNoTexture);
 }
 
 TEST(TextureSets, HoldEqualTexturesOnceInOrderOfFirstUse) {
@@ -191,21 +195,21 @@ TEST(TextureSets, HoldEqualTexturesOnceInOrderOfFirstUse) {
     write_pair(folder / "copy.tif", {0.25}, {0.5});
     write_pair(folder / "a.png", {0.5}, {0.25});
     SourceMaterial material;
-    material.roughness_map = map_of(folder / "z.png");
-    material.metalness_map = map_of(folder / "copy.tif");
+    material.maps[MapUse::roughness] = map_of(folder / "z.png");
+    material.maps[MapUse::metalness] = map_of(folder / "copy.tif");
     SourceMaterial other;
-    other.roughness_map = map_of(folder / "a.png");
-    other.metalness_map = map_of(folder / "z.png");
-    other.metalness_map->clamp = true;
+    other.maps[MapUse::roughness] = map_of(folder / "a.png");
+    other.maps[MapUse::metalness] = map_of(folder / "z.png");
+    other.maps[MapUse::metalness]->clamp = true;
     const TextureSet set = bake_quietly({material, other});
     ASSERT_EQ(set.textures.size(), 3u) << "one that is clamped is another texture";
     EXPECT_EQ(set.textures[0].name, "z.png");
-    EXPECT_EQ(set.materials[0].roughness, 0u);
-    EXPECT_EQ(set.materials[0].metalness, 0u);
-    EXPECT_EQ(set.materials[1].roughness, 1u);
-    EXPECT_EQ(set.materials[1].metalness, 2u);
+    EXPECT_EQ(set.materials[0].textures[MapUse::roughness], 0u);
+    EXPECT_EQ(set.materials[0].textures[MapUse::metalness], 0u);
+    EXPECT_EQ(set.materials[1].textures[MapUse::roughness], 1u);
+    EXPECT_EQ(set.materials[1].textures[MapUse::metalness], 2u);
     EXPECT_TRUE(set.textures[2].clamp);
-    EXPECT_EQ(set.materials[0].base_color, kNoTexture);
+    EXPECT_EQ(set.materials[0].textures[MapUse::base_color], kNoTexture);
 }
 
 TEST(TextureSets, ShrinkImagesOfOneValueToOneTexel) {
@@ -214,8 +218,8 @@ TEST(TextureSets, ShrinkImagesOfOneValueToOneTexel) {
     write_image(folder / "almost.png", 32, 16, 3,
                 [](int x, int y) { return std::vector(3, x == 31 && y == 15 ? 0.99 : 1.0); });
     SourceMaterial material;
-    material.base_color_map = map_of(folder / "white.png");
-    material.roughness_map = map_of(folder / "almost.png");
+    material.maps[MapUse::base_color] = map_of(folder / "white.png");
+    material.maps[MapUse::roughness] = map_of(folder / "almost.png");
     const TextureSet set = bake_quietly({material});
     EXPECT_EQ(set.textures[0].width, 1u);
     EXPECT_EQ(set.textures[0].height, 1u);
@@ -233,8 +237,8 @@ TEST(TextureSets, AreTheSameForAnyNumberOfThreads) {
                                (x * y) % 11 / 11.0};
         });
         SourceMaterial material;
-        material.base_color_map = map_of(path);
-        material.roughness_map = map_of(path);
+        material.maps[MapUse::base_color] = map_of(path);
+        material.maps[MapUse::roughness] = map_of(path);
         material.bump_map = bake::BumpMap{map_of(path, "", Channel::luminance), 2.0f};
         materials.push_back(material);
     }
@@ -257,8 +261,8 @@ TEST(Progress, RisesToOneAndNamesTheImages) {
     write_pair(folder / "a.png", {0.25}, {0.5});
     write_pair(folder / "b.png", {0.5}, {0.25});
     SourceMaterial material;
-    material.roughness_map = map_of(folder / "a.png");
-    material.metalness_map = map_of(folder / "b.png");
+    material.maps[MapUse::roughness] = map_of(folder / "a.png");
+    material.maps[MapUse::metalness] = map_of(folder / "b.png");
     double last = 0.0;
     std::vector<std::string> names;
     bake::bake_textures(
@@ -285,7 +289,7 @@ TEST(Blocks, BumpsBecomeRoughnessAtSmallerLevelsWithTheFactorInIt) {
     write_ridges(folder / "ridges.png");
     SourceMaterial smooth;
     smooth.roughness = 0.2f;
-    smooth.normal_map = map_of(folder / "ridges.png");
+    smooth.maps[MapUse::normal] = map_of(folder / "ridges.png");
     SourceMaterial rough = smooth;
     rough.roughness = 1.0f;
     const auto bake_as = [&](bake::TextureMode mode) {
@@ -293,17 +297,18 @@ TEST(Blocks, BumpsBecomeRoughnessAtSmallerLevelsWithTheFactorInIt) {
                                    [](const std::string& line) { ADD_FAILURE() << line; }, {});
     };
     const TextureSet blocks = bake_as(bake::TextureMode::bc);
-    ASSERT_NE(blocks.materials[0].roughness, kNoTexture);
+    ASSERT_NE(blocks.materials[0].textures[MapUse::roughness], kNoTexture);
     EXPECT_TRUE(blocks.materials[0].roughness_holds_factor);
-    const Texture& texture = blocks.textures[blocks.materials[0].roughness];
+    const Texture& texture = blocks.textures[blocks.materials[0].textures[MapUse::roughness]];
     EXPECT_EQ(texture.format, mesh_format::TextureFormat::bc4_unorm);
     EXPECT_EQ(texture.width, 8u);
     EXPECT_EQ(texture.payload[0], std::byte{51}) << "nothing is averaged at level 0";
     EXPECT_GT(texture.payload[4 * 8], std::byte{100}) << "level 1";
-    EXPECT_EQ(blocks.materials[1].roughness, kNoTexture) << "no bump makes it rougher";
+    EXPECT_EQ(blocks.materials[1].textures[MapUse::roughness], kNoTexture)
+        << "no bump makes it rougher";
     EXPECT_FALSE(blocks.materials[1].roughness_holds_factor);
     const TextureSet lossless = bake_as(bake::TextureMode::lossless);
-    EXPECT_EQ(lossless.materials[0].roughness, kNoTexture);
+    EXPECT_EQ(lossless.materials[0].textures[MapUse::roughness], kNoTexture);
     EXPECT_FALSE(lossless.materials[0].roughness_holds_factor);
 }
 
@@ -315,12 +320,12 @@ TEST(Blocks, LowerBumpsMakeLessRoughness) {
     const auto last_roughness = [&](float scale) {
         SourceMaterial material;
         material.roughness = 0.3f;
-        material.normal_map = map_of(folder / "bumps.png");
+        material.maps[MapUse::normal] = map_of(folder / "bumps.png");
         material.normal_scale = scale;
         const TextureSet set =
             bake::bake_textures({{material}}, bake::TextureMode::bc, {},
                                 [](const std::string& line) { ADD_FAILURE() << line; }, {});
-        const Texture& texture = set.textures.at(set.materials[0].roughness);
+        const Texture& texture = set.textures.at(set.materials[0].textures[MapUse::roughness]);
         return std::to_integer<int>(texture.payload[texture.payload.size() - 16]);
     };
     EXPECT_LT(last_roughness(0.5f), last_roughness(1.0f));
@@ -336,20 +341,20 @@ TEST(Blocks, EveryUseHasItsFormat) {
     write_image(folder / "grey.png", 16, 16, 1, [](int x, int) { return std::vector{x / 20.0}; });
     write_ridges(folder / "ridges.png");
     SourceMaterial material;
-    material.base_color_map = map_of(folder / "color.png");
-    material.roughness_map = map_of(folder / "grey.png");
-    material.metalness_map = map_of(folder / "grey.png");
-    material.normal_map = map_of(folder / "ridges.png");
+    material.maps[MapUse::base_color] = map_of(folder / "color.png");
+    material.maps[MapUse::roughness] = map_of(folder / "grey.png");
+    material.maps[MapUse::metalness] = map_of(folder / "grey.png");
+    material.maps[MapUse::normal] = map_of(folder / "ridges.png");
     const TextureSet set =
         bake::bake_textures({{material}}, bake::TextureMode::bc, {},
                             [](const std::string& line) { ADD_FAILURE() << line; }, {});
     const bake::MaterialTextures& uses = set.materials[0];
     const auto format = [&](std::uint32_t index) { return set.textures.at(index).format; };
-    EXPECT_EQ(format(uses.base_color), mesh_format::TextureFormat::bc1_srgb);
-    EXPECT_EQ(format(uses.alpha_mask), mesh_format::TextureFormat::bc4_unorm);
-    EXPECT_EQ(format(uses.roughness), mesh_format::TextureFormat::bc4_unorm);
-    EXPECT_EQ(format(uses.metalness), mesh_format::TextureFormat::bc4_unorm);
-    EXPECT_EQ(format(uses.normal), mesh_format::TextureFormat::bc5_unorm);
+    EXPECT_EQ(format(uses.textures[MapUse::base_color]), mesh_format::TextureFormat::bc1_srgb);
+    EXPECT_EQ(format(uses.textures[MapUse::alpha_mask]), mesh_format::TextureFormat::bc4_unorm);
+    EXPECT_EQ(format(uses.textures[MapUse::roughness]), mesh_format::TextureFormat::bc4_unorm);
+    EXPECT_EQ(format(uses.textures[MapUse::metalness]), mesh_format::TextureFormat::bc4_unorm);
+    EXPECT_EQ(format(uses.textures[MapUse::normal]), mesh_format::TextureFormat::bc5_unorm);
 }
 
 }  // namespace

@@ -15,6 +15,8 @@
 
 namespace {
 
+using mesh_format::MapUse;
+
 namespace fs = std::filesystem;
 using bake::Channel;
 using bake::ImageRequest;

@@ -35,24 +35,19 @@ struct SmallScene {
     SmallScene() {
         add_mesh({.material = 1, .vertex_count = 4, .index_count = 6});
         add_mesh({.material = 0,
-                  .position_form = PositionForm::f32,
-                  .frame_form = FrameForm::f32,
-                  .uv_form = UvForm::f32,
+                  .forms = {PositionForm::f32, FrameForm::f32, UvForm::f32, ColorForm::rgba8},
                   .vertex_count = 3,
                   .index_count = 3});
         materials.push_back({.name = {0, 5},
                              .base_color = {0.5f, 0.25f, 1.0f},
                              .roughness = 1.0f,
-                             .base_color_texture = kNoTexture,
-                             .roughness_texture = kNoTexture,
-                             .metalness_texture = kNoTexture,
-                             .normal_texture = kNoTexture,
-                             .alpha_mask_texture = kNoTexture});
+                             .opacity = 1.0f,
+                             .textures = per_map(kNoTexture)});
         materials.push_back(materials.front());
         materials.back().name = {5, 4};
         materials.back().flags = kAlphaMask;
         materials.back().alpha_cutoff = 0.5f;
-        materials.back().alpha_mask_texture = 1;
+        materials.back().textures[MapUse::alpha_mask] = 1;
         add_texture(TextureFormat::rgba8_srgb, 1, 1);
         add_texture(TextureFormat::r8_unorm, 5, 3);
         sources.push_back({.key = {1, 2}, .texture = 0, .alpha_mask = 1});
@@ -116,8 +111,7 @@ struct SmallScene {
         for (std::uint32_t i = 0; i < mesh.chunk_count; ++i) {
             chunks.push_back({.first_index = 3 * i, .index_count = 3, .radius = 1.0f});
         }
-        const std::uint32_t stride =
-            vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
+        const std::uint32_t stride = vertex_layout(mesh.forms).stride;
         for (std::uint32_t i = 0; i < mesh.vertex_count * stride; ++i) {
             vertices.push_back(static_cast<std::byte>(i));
         }
@@ -178,8 +172,7 @@ class Forgery {
     /// Float `k` of a vertex of a mesh that holds only floats.
     float& vertex_float(std::size_t of_mesh, std::size_t vertex, std::size_t k) {
         const MeshRecord& floats = mesh(of_mesh);
-        const std::uint32_t stride =
-            vertex_layout(floats.position_form, floats.frame_form, floats.uv_form).stride;
+        const std::uint32_t stride = vertex_layout(floats.forms).stride;
         return record<float>(SectionKind::vertices,
                              (floats.vertex_offset + vertex * stride) / sizeof(float) + k);
     }

@@ -149,7 +149,7 @@ TEST(Chunks, ShareAMeshOnlyWhere16BitsHoldTheirUvs) {
     EXPECT_LT(pieces.meshes.size(), 40u);
     const auto packed = sheet.packed(pieces, budget);
     for (const mesh_format::MeshRecord& mesh : packed.meshes) {
-        EXPECT_EQ(mesh.uv_form, mesh_format::UvForm::quantised);
+        EXPECT_EQ(mesh.forms.uv, mesh_format::UvForm::quantised);
     }
     EXPECT_LE(packed.scene.uv_error, 0.125f);
 }
@@ -162,7 +162,7 @@ TEST(Chunks, AreCutByUvWhereOneAloneWouldBeTooWide) {
     const auto packed = strip.packed(pieces, budget);
     EXPECT_GE(packed.meshes.size(), 7u);
     for (const mesh_format::MeshRecord& mesh : packed.meshes) {
-        EXPECT_EQ(mesh.uv_form, mesh_format::UvForm::quantised);
+        EXPECT_EQ(mesh.forms.uv, mesh_format::UvForm::quantised);
     }
 }
 

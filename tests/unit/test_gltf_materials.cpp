@@ -5,6 +5,8 @@
 
 namespace {
 
+using mesh_format::MapUse;
+
 using bake::Channel;
 using bake::SourceMaterial;
 using bake::SourceScene;
@@ -64,14 +66,14 @@ TEST_F(GltfMaterials, FactorsTexturesAndChannelsAreTakenApart) {
     EXPECT_EQ(m.normal_scale, 1.5f);
     EXPECT_FALSE(m.cull_back);
     EXPECT_TRUE(m.flip_back_normals);
-    EXPECT_EQ(name(m.base_color_map), "a.png");
-    EXPECT_EQ(name(m.roughness_map), "b.png");
-    EXPECT_EQ(name(m.metalness_map), "b.png");
-    EXPECT_EQ(name(m.normal_map), "c.png");
-    EXPECT_EQ(m.base_color_map->channel, Channel::standard);
-    EXPECT_EQ(m.roughness_map->channel, Channel::g);
-    EXPECT_EQ(m.metalness_map->channel, Channel::b);
-    EXPECT_FALSE(m.base_color_map->clamp);
+    EXPECT_EQ(name(m.maps[MapUse::base_color]), "a.png");
+    EXPECT_EQ(name(m.maps[MapUse::roughness]), "b.png");
+    EXPECT_EQ(name(m.maps[MapUse::metalness]), "b.png");
+    EXPECT_EQ(name(m.maps[MapUse::normal]), "c.png");
+    EXPECT_EQ(m.maps[MapUse::base_color]->channel, Channel::standard);
+    EXPECT_EQ(m.maps[MapUse::roughness]->channel, Channel::g);
+    EXPECT_EQ(m.maps[MapUse::metalness]->channel, Channel::b);
+    EXPECT_FALSE(m.maps[MapUse::base_color]->clamp);
     EXPECT_TRUE(warnings_.empty());
 }
 
@@ -115,7 +117,7 @@ TEST_F(GltfMaterials, SamplersClampOrRepeat) {
         GltfWriter gltf = with_material(source);
         gltf.root["samplers"] = {sampler};
         gltf.root["textures"][0]["sampler"] = 0;
-        return read(gltf).materials.at(0).base_color_map->clamp;
+        return read(gltf).materials.at(0).maps[MapUse::base_color]->clamp;
     };
     EXPECT_FALSE(clamps({{"wrapS", 10497}}));
     EXPECT_TRUE(clamps({{"wrapS", 33071}, {"wrapT", 33071}}));
@@ -168,7 +170,7 @@ TEST_F(GltfMaterials, ImagesAreEmbeddedOrFiles) {
     json source;
     source["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
     const auto image = [&](const GltfWriter& gltf) {
-        return *read(gltf).materials.at(0).base_color_map;
+        return *read(gltf).materials.at(0).maps[MapUse::base_color];
     };
     GltfWriter gltf = with_material(source);
     const std::vector<std::uint8_t> contents{1, 2, 3, 250};
@@ -198,7 +200,7 @@ TEST_F(GltfMaterials, ImagesThatCannotBeHadAreNamedOnce) {
     GltfWriter gltf = with_material(source);
     const auto warning = [&](const json& image) {
         gltf.root["images"][0] = image;
-        EXPECT_FALSE(read(gltf).materials.at(0).base_color_map);
+        EXPECT_FALSE(read(gltf).materials.at(0).maps[MapUse::base_color]);
         EXPECT_EQ(warnings_.size(), 1u);
         return warnings_.empty() ? "" : warnings_[0];
     };

@@ -69,11 +69,10 @@ struct Decoded {
 
 /// By the specification in layout.h, in the arithmetic of a GPU: float products and sums.
 Decoded decode(const bake::PackedGeometry& packed, const MeshRecord& mesh, std::size_t vertex) {
-    const auto layout =
-        mesh_format::vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form);
+    const auto layout = mesh_format::vertex_layout(mesh.forms);
     const std::byte* at = packed.vertices.data() + mesh.vertex_offset + vertex * layout.stride;
     Decoded decoded{};
-    if (mesh.position_form == PositionForm::f32) {
+    if (mesh.forms.position == PositionForm::f32) {
         std::memcpy(decoded.position, at, sizeof decoded.position);
     } else {
         std::uint16_t q[3];
@@ -83,7 +82,7 @@ Decoded decode(const bake::PackedGeometry& packed, const MeshRecord& mesh, std::
                 static_cast<float>(mesh.origin[axis] + q[axis]) * packed.scene.position_step;
         }
     }
-    if (mesh.uv_form == UvForm::f32) {
+    if (mesh.forms.uv == UvForm::f32) {
         float uv[2];
         std::memcpy(uv, at + layout.uv_offset, sizeof uv);
         decoded.uv[0] = uv[0];
@@ -211,7 +210,7 @@ TEST(Quantise, UvsThatWouldMissTheirBudgetStayFloats) {
     for (const std::uint32_t texels : {64u, 2048u}) {
         const bake::UvBudget budget{.texels = texels};
         const auto packed = scene.pack(budget);
-        EXPECT_EQ(packed.meshes[0].uv_form, texels == 64 ? UvForm::quantised : UvForm::f32);
+        EXPECT_EQ(packed.meshes[0].forms.uv, texels == 64 ? UvForm::quantised : UvForm::f32);
         EXPECT_LE(packed.scene.uv_error, 0.125f);
         for (std::size_t i = 0; i < 300; ++i) {
             EXPECT_NEAR(decode(packed, packed.meshes[0], i).uv[0], scene.uv(0, i).x, 0.13 / texels);
@@ -258,13 +257,36 @@ TEST(Quantise, BytesBetweenMeshesAreZero) {
     const auto packed = scene.pack({}, {FrameForm::quat32, PositionForm::quantised});
     for (std::size_t i = 0; i < packed.meshes.size(); ++i) {
         const MeshRecord& mesh = packed.meshes[i];
-        const auto stride =
-            mesh_format::vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
+        const auto stride = mesh_format::vertex_layout(mesh.forms).stride;
         const std::size_t end = i + 1 < packed.meshes.size() ? packed.meshes[i + 1].vertex_offset
                                                              : packed.vertices.size();
         std::size_t at = mesh.vertex_offset + mesh.vertex_count * stride;
         EXPECT_EQ(end - at, 2u);
         for (; at < end; ++at) EXPECT_EQ(packed.vertices[at], std::byte{0});
+    }
+}
+
+TEST(Quantise, ColoursLieBehindTheUvsOfMeshesThatHaveAny) {
+    Scene scene({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0}, {1, 0}, {0, 1}});
+    scene.add({{2, 0, 0}, {3, 0, 0}, {2, 1, 0}}, {{0, 0}, {1, 0}, {0, 1}});
+    constexpr std::uint32_t kWhite = 0xFFFF'FFFF;
+    const std::uint32_t colors[] = {kWhite, 0x8040'20FF, 0x0102'0304};
+    for (const std::uint32_t color : colors) scene.framed.colors.push_back(color);
+    for (int i = 0; i < 3; ++i) scene.framed.colors.push_back(kWhite);
+    for (const FrameForm form : {FrameForm::quat48, FrameForm::quat32, FrameForm::f32}) {
+        const bake::PackedGeometry packed = scene.pack({}, {form, PositionForm::quantised});
+        EXPECT_EQ(packed.meshes[1].forms.color, mesh_format::ColorForm::none);
+        const MeshRecord& mesh = packed.meshes[0];
+        ASSERT_EQ(mesh.forms.color, mesh_format::ColorForm::rgba8);
+        const auto layout = mesh_format::vertex_layout(mesh.forms);
+        for (std::size_t i = 0; i < 3; ++i) {
+            std::uint32_t color = 0;
+            std::memcpy(&color,
+                        packed.vertices.data() + mesh.vertex_offset + i * layout.stride +
+                            layout.color_offset,
+                        sizeof color);
+            EXPECT_EQ(color, colors[i]);
+        }
     }
 }
 

@@ -7,6 +7,8 @@
 
 namespace {
 
+using mesh_format::MapUse;
+
 using bake::BakeError;
 using bake::Channel;
 using bake::SourceMaterial;
@@ -88,16 +90,17 @@ TEST_F(ReadMtl, ClampsFactorsAndSaysSo) {
 TEST_F(ReadMtl, KeepsEachMapInItsPlace) {
     const auto m = material(
         "map_Kd kd.png\nmap_Pr pr.png\nmap_Pm pm.png\nnorm n.png\nmap_d d.png\nbump b.png\n");
-    EXPECT_EQ(file(m.base_color_map.value()), "kd.png");
-    EXPECT_EQ(file(m.roughness_map.value()), "pr.png");
-    EXPECT_EQ(file(m.metalness_map.value()), "pm.png");
-    EXPECT_EQ(file(m.normal_map.value()), "n.png");
-    EXPECT_EQ(file(m.alpha_map.value()), "d.png");
+    EXPECT_EQ(file(m.maps[MapUse::base_color].value()), "kd.png");
+    EXPECT_EQ(file(m.maps[MapUse::roughness].value()), "pr.png");
+    EXPECT_EQ(file(m.maps[MapUse::metalness].value()), "pm.png");
+    EXPECT_EQ(file(m.maps[MapUse::normal].value()), "n.png");
+    EXPECT_EQ(file(m.maps[MapUse::alpha_mask].value()), "d.png");
     EXPECT_EQ(file(m.bump_map.value().map), "b.png");
     EXPECT_EQ(m.bump_map->scale, 1);
-    EXPECT_EQ(m.roughness_map->stated_in, (folder_.path() / "m.mtl:3").string());
+    EXPECT_EQ(m.maps[MapUse::roughness]->stated_in, (folder_.path() / "m.mtl:3").string());
     EXPECT_FALSE(m.cull_back);
-    EXPECT_FALSE(material("").normal_map || material("").alpha_map || material("").bump_map);
+    EXPECT_FALSE(material("").maps[MapUse::normal] || material("").maps[MapUse::alpha_mask] ||
+                 material("").bump_map);
 }
 
 TEST_F(ReadMtl, HonoursBumpScaleClampAndChannel) {
@@ -107,16 +110,17 @@ TEST_F(ReadMtl, HonoursBumpScaleClampAndChannel) {
         EXPECT_TRUE(bump->map.clamp);
         EXPECT_EQ(file(bump->map), "b.png");
     }
-    EXPECT_FALSE(material("map_Kd -clamp off a.png\n").base_color_map->clamp);
+    EXPECT_FALSE(material("map_Kd -clamp off a.png\n").maps[MapUse::base_color]->clamp);
     const std::vector<std::pair<std::string, Channel>> channels{
         {"r", Channel::r},     {"g", Channel::g},         {"b", Channel::b},
         {"m", Channel::alpha}, {"l", Channel::luminance},
     };
     for (const auto& [letter, channel] : channels) {
-        EXPECT_EQ(material("map_Pr -imfchan " + letter + " a.png\n").roughness_map->channel,
-                  channel);
+        EXPECT_EQ(
+            material("map_Pr -imfchan " + letter + " a.png\n").maps[MapUse::roughness]->channel,
+            channel);
     }
-    EXPECT_EQ(material("map_Pr a.png\n").roughness_map->channel, Channel::standard);
+    EXPECT_EQ(material("map_Pr a.png\n").maps[MapUse::roughness]->channel, Channel::standard);
     EXPECT_TRUE(warnings_.empty());
 }
 
@@ -126,14 +130,15 @@ TEST_F(ReadMtl, FindsThePathBehindAnyOptions) {
           "-texres 512", "-boost 2", "-cc on", "-type sphere", "-bm 3", "-imfchan z",
           "-s 2 2 -clamp on -mm 0 .5", "-S 2"}) {
         const auto m = material(std::string("map_Kd ") + options + " three little pigs.png\n");
-        EXPECT_EQ(file(m.base_color_map.value()), "three little pigs.png") << options;
+        EXPECT_EQ(file(m.maps[MapUse::base_color].value()), "three little pigs.png") << options;
         ASSERT_EQ(warnings_.size(), 1u) << options;
     }
-    EXPECT_EQ(file(*material("map_Kd -s 2 2 brick.png\n").base_color_map), "brick.png");
-    EXPECT_EQ(file(*material("map_Kd -s 2 2 2 4 bricks.png\n").base_color_map), "4 bricks.png");
-    EXPECT_EQ(file(*material("map_Kd -o 1 2.png\n").base_color_map), "2.png");
-    EXPECT_EQ(file(*material("map_Kd -s 2 7\n").base_color_map), "7");
-    EXPECT_EQ(file(*material("map_Kd -unknown.png\n").base_color_map), "-unknown.png");
+    EXPECT_EQ(file(*material("map_Kd -s 2 2 brick.png\n").maps[MapUse::base_color]), "brick.png");
+    EXPECT_EQ(file(*material("map_Kd -s 2 2 2 4 bricks.png\n").maps[MapUse::base_color]),
+              "4 bricks.png");
+    EXPECT_EQ(file(*material("map_Kd -o 1 2.png\n").maps[MapUse::base_color]), "2.png");
+    EXPECT_EQ(file(*material("map_Kd -s 2 7\n").maps[MapUse::base_color]), "7");
+    EXPECT_EQ(file(*material("map_Kd -unknown.png\n").maps[MapUse::base_color]), "-unknown.png");
 }
 
 TEST_F(ReadMtl, NamesOptionsWithoutEffectInOneWarning) {
@@ -145,12 +150,13 @@ TEST_F(ReadMtl, NamesOptionsWithoutEffectInOneWarning) {
 }
 
 TEST_F(ReadMtl, PathsMayHoldBlanksBackslashesAndQuotes) {
-    EXPECT_EQ(file(*material("map_Kd a b/c d.png \t\r\n").base_color_map), "a b/c d.png");
-    EXPECT_EQ(file(*material("map_Kd tex\\sub\\a.png\n").base_color_map), "tex/sub/a.png");
-    EXPECT_EQ(file(*material("map_Kd \"a b.png\"\n").base_color_map), "a b.png");
-    EXPECT_EQ(file(*material("map_Kd a#1.png\n").base_color_map), "a#1.png");
-    EXPECT_EQ(material("map_Kd /abs/a.png\n").base_color_map->file, "/abs/a.png");
-    EXPECT_FALSE(material("map_Kd\n").base_color_map);
+    EXPECT_EQ(file(*material("map_Kd a b/c d.png \t\r\n").maps[MapUse::base_color]), "a b/c d.png");
+    EXPECT_EQ(file(*material("map_Kd tex\\sub\\a.png\n").maps[MapUse::base_color]),
+              "tex/sub/a.png");
+    EXPECT_EQ(file(*material("map_Kd \"a b.png\"\n").maps[MapUse::base_color]), "a b.png");
+    EXPECT_EQ(file(*material("map_Kd a#1.png\n").maps[MapUse::base_color]), "a#1.png");
+    EXPECT_EQ(material("map_Kd /abs/a.png\n").maps[MapUse::base_color]->file, "/abs/a.png");
+    EXPECT_FALSE(material("map_Kd\n").maps[MapUse::base_color]);
     EXPECT_EQ(warnings_, std::vector<std::string>{"m.mtl:2: no image is named"});
 }
 

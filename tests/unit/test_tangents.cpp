@@ -251,4 +251,29 @@ TEST(Tangents, OfNoTrianglesAreNone) {
     EXPECT_TRUE(Mesh{}.tangents().empty());
 }
 
+TEST(Tangents, CornersOfOtherColoursAreOtherVerticesWithTheSameTangent) {
+    bake::SourceScene scene;
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    scene.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    scene.normals = {kUp};
+    for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) scene.corners.push_back({i, 0, i});
+    scene.triangle_material = {0, 0};
+    scene.materials.resize(1);
+    bake::weld(scene);
+    const bake::FramedTriangles plain = bake::add_tangents(scene);
+    EXPECT_EQ(plain.vertices.size(), 4u);
+    EXPECT_TRUE(plain.colors.empty());
+
+    // The two triangles agree at the first vertex and not at the third.
+    scene.colors = {1, 2, 3, 1, 4, 5};
+    const bake::FramedTriangles colored = bake::add_tangents(scene);
+    ASSERT_EQ(colored.vertices.size(), 5u);
+    ASSERT_EQ(colored.colors.size(), 5u);
+    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
+        EXPECT_EQ(colored.colors[colored.indices[i]], scene.colors[i]);
+        EXPECT_EQ(colored.vertices[colored.indices[i]].tangent,
+                  plain.vertices[plain.indices[i]].tangent);
+    }
+}
+
 }  // namespace
