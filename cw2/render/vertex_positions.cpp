@@ -31,12 +31,11 @@ std::vector<glm::vec3> vertex_positions(const mesh_format::Document& document) {
     std::vector<glm::vec3> positions(count);
     tbb::parallel_for(std::size_t{0}, document.meshes.size(), [&](std::size_t index) {
         const MeshRecord& mesh = document.meshes[index];
-        const std::uint32_t stride =
-            mesh_format::vertex_layout(mesh.position_form, mesh.frame_form, mesh.uv_form).stride;
+        const std::uint32_t stride = mesh_format::vertex_layout(mesh.forms).stride;
         const std::byte* vertex = document.vertices.data() + mesh.vertex_offset;
         const glm::ivec3 origin = glm::make_vec3(mesh.origin);
         for (std::size_t i = first[index]; i < first[index] + mesh.vertex_count; ++i) {
-            positions[i] = mesh.position_form == mesh_format::PositionForm::quantised
+            positions[i] = mesh.forms.position == mesh_format::PositionForm::quantised
                                ? glm::vec3(origin + glm::ivec3(words_at<glm::u16vec3>(vertex))) *
                                      document.scene.position_step
                                : words_at<glm::vec3>(vertex);
