@@ -216,7 +216,7 @@ FrameSettings settings_for(ImageKind kind, const Options& options, const Scene& 
     const float aspect =
         static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     FrameSettings settings =
-        frame_settings(completed(options, scene.start()), scene.bounds(), aspect);
+        frame_settings(completed(options, scene.start(), scene.bounds()), scene.bounds(), aspect);
     if (kind == ImageKind::exr) {
         // It holds the values themselves.
         settings.exposure = 0.0f;

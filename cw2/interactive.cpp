@@ -81,7 +81,8 @@ class Session {
           presenter_(device, surface, layouts_, built_in_shaders(),
                      static_cast<VkSampleCountFlagBits>(*options.samples)),
           picker_(device, layouts_, built_in_shaders()),
-          state_(completed(options, scene_->start()), scene_->bounds(), aspect_of(window.extent())),
+          state_(completed(options, scene_->start(), scene_->bounds()), scene_->bounds(),
+                 aspect_of(window.extent())),
           title_(window, options.scene.filename().string()) {}
 
     void run() {

@@ -6,16 +6,17 @@
 
 namespace cw2 {
 
-Options completed(Options options, const SceneStart& start) {
+Options completed(Options options, const SceneStart& start, const Bounds& bounds) {
     constexpr float kDegreesPerRadian = 180.0f / 3.14159265f;
     if (start.camera && !options.camera_position && !options.camera_target) {
-        options.camera_position = start.camera->position;
-        options.camera_target = start.camera->target;
+        options.camera_position = to_user(start.camera->position, bounds);
+        options.camera_target = to_user(start.camera->target, bounds);
         if (!options.vertical_fov) {
             options.vertical_fov = start.camera->vertical_fov * kDegreesPerRadian;
         }
     }
-    if (!options.light_position) options.light_position = start.light_position;
+    if (!options.light_position && start.light_position)
+        options.light_position = to_user(*start.light_position, bounds);
     if (!options.light_color) options.light_color = start.light_color;
     return options;
 }
@@ -25,9 +26,10 @@ namespace {
 Camera start_camera(const Options& options, const Bounds& bounds, float aspect) {
     constexpr float kRadiansPerDegree = 3.14159265f / 180.0f;
     const float fov = options.vertical_fov.value_or(kVerticalFov) * kRadiansPerDegree;
-    Camera camera = options.camera_position ? Camera{*options.camera_position, bounds.center, fov}
-                                            : default_camera(bounds, fov, aspect);
-    camera.target = options.camera_target.value_or(camera.target);
+    Camera camera = options.camera_position
+                        ? Camera{from_user(*options.camera_position, bounds), bounds.center, fov}
+                        : default_camera(bounds, fov, aspect);
+    if (options.camera_target) camera.target = from_user(*options.camera_target, bounds);
     if (camera.position == camera.target) {
         throw UsageError("the camera's position and target are the same point");
     }
@@ -49,7 +51,7 @@ FrameSettings frame_settings(const Options& options, const Bounds& bounds, float
     settings.exposure = options.exposure;
     settings.false_color = options.false_color;
     settings.camera = start_camera(options, bounds, aspect);
-    settings.light = {options.light_position ? *options.light_position
+    settings.light = {options.light_position ? from_user(*options.light_position, bounds)
                                              : default_light_position(bounds, settings.camera),
                       options.light_color.value_or(glm::vec3(1.0f)), options.ambient};
     settings.materials = {options.roughness, options.metalness, options.normal_strength};

@@ -10,7 +10,7 @@ namespace cw2 {
 
 /// The options with what the scene asks for where they leave it open: its camera if they state
 /// neither position nor target, its light's position and colour.
-Options completed(Options options, const SceneStart& start);
+Options completed(Options options, const SceneStart& start, const Bounds& bounds);
 
 /// What the options ask a frame to show of a scene of these bounds, at the start of the light's
 /// orbit. `aspect` is the picture's width / height.

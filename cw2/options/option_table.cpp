@@ -24,7 +24,8 @@ bool read_value(std::string_view text, T& value) {
            std::isfinite(static_cast<double>(value));
 }
 
-bool read_value(std::string_view text, glm::vec3& vector) {
+template <typename T>
+bool read_value(std::string_view text, glm::vec<3, T>& vector) {
     for (int i = 0; i < 3; ++i) {
         const std::size_t comma = std::min(text.find(','), text.size());
         if ((comma == text.size()) != (i == 2) || !read_value(text.substr(0, comma), vector[i])) {
@@ -113,7 +114,8 @@ requires std::is_arithmetic_v<T> std::string toml_of(T value) {
     if constexpr (std::is_floating_point_v<T>) return fmt::format("{:#}", value);
     return fmt::format("{}", value);
 }
-std::string toml_of(const glm::vec3& v) {
+template <typename T>
+std::string toml_of(const glm::vec<3, T>& v) {
     return fmt::format("[{}, {}, {}]", toml_of(v.x), toml_of(v.y), toml_of(v.z));
 }
 std::string toml_of(const std::string& text) {

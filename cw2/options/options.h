@@ -33,12 +33,12 @@ struct Options {
     float divider = 0.5f;                      ///< in [0, 1]
     std::optional<float> exposure;             ///< stops, in [-64, 64]; none: by the view
     std::optional<FalseColor> false_color;
-    std::optional<std::uint32_t> samples;  ///< 1 or 4; none: by the device and the output
-    std::optional<glm::vec3> camera_position;
-    std::optional<glm::vec3> camera_target;
-    std::optional<float> vertical_fov;  ///< degrees, in (0, 180); none: kVerticalFov
-    std::optional<glm::vec3> light_position;
-    std::optional<glm::vec3> light_color;  ///< none: 1, 1, 1
+    std::optional<std::uint32_t> samples;       ///< 1 or 4; none: by the device and the output
+    std::optional<glm::dvec3> camera_position;  ///< this and the next are in the user's coordinates
+    std::optional<glm::dvec3> camera_target;
+    std::optional<float> vertical_fov;         ///< degrees, in (0, 180); none: kVerticalFov
+    std::optional<glm::dvec3> light_position;  ///< the same
+    std::optional<glm::vec3> light_color;      ///< none: 1, 1, 1
     glm::vec3 ambient{0.02f};
     glm::vec3 background{0.1f};
     double time = 0.0;               ///< seconds of the light's orbit

@@ -4,6 +4,8 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -14,10 +16,26 @@ Bounds bounds_of(const mesh_format::SceneRecord& scene, std::span<const glm::vec
     const glm::vec3 low = glm::make_vec3(scene.bounds_min);
     const glm::vec3 high = glm::make_vec3(scene.bounds_max);
     const glm::vec3 center(0.5 * (glm::dvec3(low) + glm::dvec3(high)));
-    if (scene.radius > 0.0f) return {center, scene.radius, vertices};
+    const glm::dvec3 origin = glm::make_vec3(scene.origin);
+    if (scene.radius > 0.0f) return {center, scene.radius, vertices, origin};
     // A scene of one point still has a picture, from where floats tell camera and point apart.
     const auto distance = static_cast<float>(glm::length(glm::dvec3(center)));
-    return {center, distance > 0.0f ? 1e-3f * distance : 1.0f, vertices};
+    return {center, distance > 0.0f ? 1e-3f * distance : 1.0f, vertices, origin};
+}
+
+glm::vec3 from_user(const glm::dvec3& position, const Bounds& bounds) {
+    return glm::vec3(position - bounds.origin);
+}
+
+glm::dvec3 to_user(const glm::vec3& position, const Bounds& bounds) {
+    if (bounds.origin != glm::dvec3(0.0)) return bounds.origin + glm::dvec3(position);
+    glm::dvec3 result;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::array<char, 32> text;
+        char* const end = std::to_chars(text.data(), text.data() + text.size(), position[axis]).ptr;
+        std::from_chars(text.data(), end, result[axis]);
+    }
+    return result;
 }
 
 SceneStart start_of(const mesh_format::SceneRecord& scene) {

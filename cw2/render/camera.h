@@ -10,13 +10,20 @@
 
 namespace cw2 {
 
-/// Where a scene lies: the centre of its bounding box, the largest distance from there, and its
-/// vertices.
+/// Where a scene lies: its origin in the user's coordinates, to which all else is relative, here
+/// and wherever something is drawn; the centre of its bounding box, the largest distance from
+/// there, and its vertices.
 struct Bounds {
     glm::vec3 center;
     float radius;                         ///< scene units, positive
     std::span<const glm::vec3> vertices;  ///< of the scene that the bounds are of
+    glm::dvec3 origin{0.0};
 };
+
+/// Between the user's coordinates and those relative to the origin. Without an origin a number
+/// becomes the double with the fewest digits that is the same float: what people can read.
+glm::vec3 from_user(const glm::dvec3& position, const Bounds& bounds);
+glm::dvec3 to_user(const glm::vec3& position, const Bounds& bounds);
 Bounds bounds_of(const mesh_format::SceneRecord& scene, std::span<const glm::vec3> vertices);
 
 /// A right-handed camera, up +Y (unless it looks along Y).
@@ -41,9 +48,9 @@ Camera default_camera(const Bounds& bounds, float vertical_fov, float aspect);
 
 /// What a scene says about how it wants to be seen.
 struct SceneStart {
-    std::optional<Camera> camera;
-    std::optional<glm::vec3> light_position;
-    std::optional<glm::vec3> light_color;  ///< linear
+    std::optional<Camera> camera;             ///< relative to the scene's origin
+    std::optional<glm::vec3> light_position;  ///< the same
+    std::optional<glm::vec3> light_color;     ///< linear
 };
 SceneStart start_of(const mesh_format::SceneRecord& scene);
 

@@ -25,7 +25,7 @@ constexpr VkFormat kFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 constexpr ImageUse kCopied{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
                            VK_ACCESS_2_TRANSFER_READ_BIT};
 
-Pick pick_of(const Values& values, glm::uvec2 pixel) {
+Pick pick_of(const Values& values, glm::uvec2 pixel, const Bounds& bounds) {
     const auto value = [&](std::uint32_t reading) {
         const auto at = std::find(kReadings.begin(), kReadings.end(), reading) - kReadings.begin();
         return glm::vec3(values[static_cast<std::size_t>(at)]);
@@ -35,7 +35,7 @@ Pick pick_of(const Values& values, glm::uvec2 pixel) {
     };
     return {.pixel = pixel,
             .material = static_cast<std::uint32_t>(value(interop::kReadMaterial).x),
-            .position = value(interop::kReadPosition),
+            .position = to_user(value(interop::kReadPosition), bounds),
             .normal = direction(interop::kViewNormal),
             .to_light = direction(interop::kViewLightDirection),
             .to_camera = direction(interop::kViewViewDirection),
@@ -78,7 +78,7 @@ float Pick::v_dot_h() const {
 }
 
 std::string describe(const Pick& pick, const std::string& material) {
-    const auto vector = [](const glm::vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
+    const auto vector = [](const auto& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
     return fmt::format(
         "pixel {},{}: material {}; position {}; normal {}; base color {}; roughness {}; "
         "metalness {}; n.l {}; n.v {}; n.h {}; v.h {}; D {}; G {}; F {}; diffuse {}; specular {}; "
@@ -137,7 +137,7 @@ std::optional<Pick> Picker::pick(const Scene& scene, const FrameSettings& settin
     Values values;
     std::memcpy(values.data(), values_.mapped.data(), sizeof values);
     if (values.front().w == 0.0f) return std::nullopt;
-    return pick_of(values, pixel);
+    return pick_of(values, pixel, scene.bounds());
 }
 
 }  // namespace cw2

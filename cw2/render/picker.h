@@ -15,7 +15,7 @@ namespace cw2 {
 struct Pick {
     glm::uvec2 pixel;        ///< from the upper left corner
     std::uint32_t material;  ///< index into Scene::material_names
-    glm::vec3 position;      ///< world
+    glm::dvec3 position;     ///< in the user's coordinates
     glm::vec3 normal;        ///< that shades; it and the next two are of unit length
     glm::vec3 to_light;
     glm::vec3 to_camera;

@@ -198,12 +198,16 @@ void light_section(PanelState& state, const Bounds& bounds) {
     if (!section("Light")) return;
     Options& options = state.options;
     label("position");
-    glm::vec3 position = orbit(*options.light_position, bounds.center, options.time);
+    glm::dvec3 position = to_user(
+        orbit(from_user(*options.light_position, bounds), bounds.center, options.time), bounds);
     // Coordinates that can be entered, by the scene's.
-    const float largest = 1e6f * (glm::length(bounds.center) + bounds.radius);
-    if (ImGui::DragFloat3("##light", glm::value_ptr(position), 0.005f * bounds.radius, -largest,
-                          largest, "%.4g", kClamp)) {
-        options.light_position = orbit(position, bounds.center, -options.time);
+    const double largest =
+        1e6 * (glm::length(to_user(bounds.center, bounds)) + double{bounds.radius});
+    const double smallest = -largest;
+    if (ImGui::DragScalarN("##light", ImGuiDataType_Double, glm::value_ptr(position), 3,
+                           0.005f * bounds.radius, &smallest, &largest, "%.6g", kClamp)) {
+        options.light_position =
+            to_user(orbit(from_user(position, bounds), bounds.center, -options.time), bounds);
     }
     label("orbit");
     ImGui::Checkbox("##moves", &state.light_moves);
@@ -221,8 +225,8 @@ void camera_section(Options& options, std::vector<Command>& commands) {
     if (!section("Camera")) return;
     label("field of view");
     ImGui::SliderFloat("##fov", &*options.vertical_fov, 1.0f, 179.0f, "%.1f\xc2\xb0", kClamp);
-    const auto vector = [](const glm::vec3& v) {
-        return fmt::format("{:.4g}, {:.4g}, {:.4g}", v.x, v.y, v.z);
+    const auto vector = [](const glm::dvec3& v) {
+        return fmt::format("{:.6g}, {:.6g}, {:.6g}", v.x, v.y, v.z);
     };
     reading("at", vector(*options.camera_position));
     reading("towards", vector(*options.camera_target));
@@ -312,7 +316,7 @@ std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state) {
 }
 
 std::string camera_flags(const Options& options) {
-    const auto vector = [](const glm::vec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
+    const auto vector = [](const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
     return fmt::format("--camera-position {} --camera-target {} --fov {}",
                        vector(*options.camera_position), vector(*options.camera_target),
                        *options.vertical_fov);

@@ -19,10 +19,10 @@ constexpr float kFirstSeconds = 1.0f / 60.0f;
 Options spelt_out(const Options& options, const Bounds& bounds, float aspect) {
     const FrameSettings settings = frame_settings(options, bounds, aspect);
     Options result = options;
-    result.camera_position = settings.camera.position;
-    result.camera_target = settings.camera.target;
+    result.camera_position = to_user(settings.camera.position, bounds);
+    result.camera_target = to_user(settings.camera.target, bounds);
     result.vertical_fov = options.vertical_fov.value_or(kVerticalFov);
-    result.light_position = settings.light.position;
+    result.light_position = to_user(settings.light.position, bounds);
     result.light_color = settings.light.color;
     return result;
 }
@@ -50,10 +50,12 @@ void ViewerState::set(const Options& options, bool light_moves) {
 }
 
 void ViewerState::set_bounds(const Bounds& bounds) {
-    const glm::vec3 light = orbit(*options_.light_position, bounds_.center, options_.time);
-    // The orbit is about another centre now: it starts where it comes by the same point.
-    if (bounds.center != bounds_.center) {
-        options_.light_position = orbit(light, bounds.center, -options_.time);
+    const glm::vec3 light =
+        orbit(from_user(*options_.light_position, bounds_), bounds_.center, options_.time);
+    // The orbit may be about another centre now: it starts where it comes by the same point.
+    if (bounds.center != bounds_.center || bounds.origin != bounds_.origin) {
+        const glm::vec3 there = from_user(to_user(light, bounds_), bounds);
+        options_.light_position = to_user(orbit(there, bounds.center, -options_.time), bounds);
     }
     bounds_ = bounds;
 }
@@ -107,17 +109,22 @@ bool ViewerState::apply(const Command& command, float aspect) {
 bool ViewerState::fly(const Input& input, float seconds) {
     const bool moves = input.direction != glm::vec3(0.0f);
     const bool turns = input.drag != glm::vec2(0.0f);
-    Camera camera{*options_.camera_position, *options_.camera_target, 0.0f};
+    if (!moves && !turns) {
+        flies_ = false;
+        return false;
+    }
+    Camera camera{from_user(*options_.camera_position, bounds_),
+                  from_user(*options_.camera_target, bounds_), 0.0f};
     if (turns) camera = turned(camera, kRadiansPerDraggedUnit * input.drag);
     if (moves) {
         const float held = flies_ ? seconds : std::min(seconds, kFirstSeconds);
         const float distance = kRadiiPerSecond * bounds_.radius * input.pace * held;
         camera = moved(camera, distance * glm::normalize(input.direction));
     }
-    options_.camera_position = camera.position;
-    options_.camera_target = camera.target;
+    options_.camera_position = to_user(camera.position, bounds_);
+    options_.camera_target = to_user(camera.target, bounds_);
     flies_ = moves;
-    return moves || turns;
+    return true;
 }
 
 }  // namespace cw2

@@ -198,7 +198,7 @@ TEST_F(Picker, KnowsPlaceAndMaterial) {
             ++(hits ? surfaces : backgrounds);
             if (!hits) continue;
             // Positions are stored on a lattice.
-            EXPECT_LT(glm::distance(pick->position, truth), 1e-3f) << x << ' ' << y;
+            EXPECT_LT(glm::distance(vec3(pick->position), truth), 1e-3f) << x << ' ' << y;
             EXPECT_EQ(reader.scene().material_names()[pick->material],
                       truth.x < 0.0f ? "left half" : "right");
             EXPECT_NEAR(pick->roughness, truth.x < 0.0f ? 0.75f : 0.25f, 1e-6f);

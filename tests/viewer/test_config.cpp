@@ -44,18 +44,16 @@ class RandomOptions {
         options.view = below(interop::kViewCount);
         maybe([&] { options.split = {side(), side()}; });
         options.divider = std::uniform_real_distribution(0.0f, 1.0f)(random_);
-        maybe([&] {
-            options.exposure = std::uniform_real_distribution(-64.0f, 64.0f)(random_);
-        });
+        maybe([&] { options.exposure = std::uniform_real_distribution(-64.0f, 64.0f)(random_); });
         maybe([&] {
             options.false_color.emplace();
             maybe([&] { options.false_color->range = range(); });
         });
         maybe([&] { options.samples = below(2) == 0 ? 1 : 4; });
-        maybe([&] { options.camera_position = vector(); });
-        maybe([&] { options.camera_target = vector(); });
+        maybe([&] { options.camera_position = place(); });
+        maybe([&] { options.camera_target = place(); });
         options.vertical_fov = std::uniform_real_distribution(1.0f, 179.0f)(random_);
-        maybe([&] { options.light_position = vector(); });
+        maybe([&] { options.light_position = place(); });
         options.light_color = vector();
         options.ambient = vector();
         options.background = vector();
@@ -104,6 +102,10 @@ class RandomOptions {
     glm::vec3 vector() {
         return {number<float, std::uint32_t>(), number<float, std::uint32_t>(),
                 number<float, std::uint32_t>()};
+    }
+    glm::dvec3 place() {
+        return {number<double, std::uint64_t>(), number<double, std::uint64_t>(),
+                number<double, std::uint64_t>()};
     }
     Side side() { return {below(interop::kViewCount), below(2) == 0, below(2) == 0}; }
     ValueRange range() {
@@ -214,8 +216,8 @@ TEST(Config, ReadsWhatPeopleWriteInToml) {
            "fov = 7_0\nno-normal-map = false\nno-alpha-mask   =   true";
     const auto options = parse({"--config", folder / "a.toml"});
     EXPECT_EQ(options->scene, "C:\\new #1.cw2mesh");
-    EXPECT_EQ(options->camera_position, glm::vec3(1.5f, -0.2f, 3.0f));
-    EXPECT_EQ(options->light_position, glm::vec3(4.0f, 5.0f, 6.0f));
+    EXPECT_EQ(options->camera_position, glm::dvec3(1.5, -0.2, 3.0));
+    EXPECT_EQ(options->light_position, glm::dvec3(4.0, 5.0, 6.0));
     EXPECT_EQ(options->device, "\u00fc \"q\" \U0001F600");
     EXPECT_EQ(options->vertical_fov, 70.0f);
     EXPECT_TRUE(options->normal_map);

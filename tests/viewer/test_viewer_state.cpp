@@ -161,4 +161,20 @@ TEST(ViewerState, CommandsAboutTheProgramLeaveThePictureAlone) {
     }
 }
 
+TEST(UserCoordinates, AreTheScenesOwnWithoutAnOrigin) {
+    const glm::vec3 position(7.8f, -1e-7f, 12345.678f);
+    const glm::dvec3 user = cw2::to_user(position, kBounds);
+    EXPECT_EQ(user, glm::dvec3(7.8, -1e-7, 12345.678)) << "what people would type";
+    EXPECT_EQ(cw2::from_user(user, kBounds), position);
+}
+
+TEST(UserCoordinates, KeepSmallDistancesFarFromTheOrigin) {
+    cw2::Bounds far = kBounds;
+    far.origin = {500'000.0, 4.0e6, -1.25};
+    const glm::vec3 position(0.001f, 1.0f, -3.0f);
+    const glm::dvec3 user = cw2::to_user(position, far);
+    EXPECT_NEAR(user.x, 500'000.001, 1e-9);
+    EXPECT_LT(glm::distance(cw2::from_user(user, far), position), 1e-9f);
+}
+
 }  // namespace
