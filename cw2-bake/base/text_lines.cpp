@@ -22,6 +22,14 @@ std::string_view without_bom(std::string_view text) {
     return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }
 
+std::string_view without_padding(std::string_view text) {
+    const auto is_padding = [](char c) {
+        return c == '\0' || c == '\x1A' || is_blank(c) || is_line_end(c);
+    };
+    while (!text.empty() && is_padding(text.back())) text.remove_suffix(1);
+    return text;
+}
+
 std::size_t line_end(std::string_view text, std::size_t offset) {
     while (offset < text.size() && !is_line_end(text[offset])) ++offset;
     if (offset == text.size()) return offset;

@@ -25,6 +25,9 @@ std::string_view take_word(std::string_view& text);
 /// `text` without a UTF-8 byte order mark at its start.
 std::string_view without_bom(std::string_view text);
 
+/// `text` without what programs pad files with at their end: NULs, Ctrl-Zs and white space.
+std::string_view without_padding(std::string_view text);
+
 /// Where the line that holds text[offset] ends, its line end included.
 std::size_t line_end(std::string_view text, std::size_t offset);
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -59,12 +60,11 @@ ObjCounts counts_of(const SourceScene& scene) {
 /// Takes the chunks in the order of the text.
 class Assembly {
  public:
-    Assembly(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+    Assembly(std::string_view text, const std::string& name, std::size_t chunk_bytes)
+        : text_(text), name_(name), chunk_bytes_(chunk_bytes) {}
 
     void append_chunk(ObjChunk& chunk, std::size_t text_bytes_left);
-    /// Of the indices that are not relative, the largest of each attribute is in range.
-    bool in_range() const;
-    ObjContents finish() && { return std::move(contents_); }
+    ObjContents finish() &&;
 
  private:
     void append_arrays(const ObjChunk& chunk, std::size_t text_bytes_left);
@@ -72,26 +72,40 @@ class Assembly {
     void append_notes(const ObjChunk& chunk);
     bool resolve(ObjChunk& chunk) const;
     std::uint32_t material_in_use();
+    bool all_good() const;
+    void mend();
+    template <typename T>
+    void mend(ObjAttribute attribute, std::uint32_t Corner::*index, std::vector<T>& elements);
+    struct Face {
+        std::size_t offset;  // of its statement
+        ObjChunk parsed;
+    };
+    Face parse_face(std::size_t triangle) const;
+    void warn_of_missing(ObjAttribute attribute, std::size_t count, std::size_t first_triangle);
 
     std::string_view text_;
     const std::string& name_;
+    const std::size_t chunk_bytes_;
     ObjContents contents_;
     ObjCounts max_index_{};
-    std::unordered_map<std::string, std::uint32_t> material_ids_;
+    std::unordered_map<std::optional<std::string>, std::uint32_t> material_ids_;
     ObjMaterialUse material_use_{};
     std::uint32_t material_id_ = kAbsent;  // of material_use_, once a face uses it
-    bool relative_out_of_range_ = false;
+    std::vector<ObjNote> notes_;
+    bool has_invalid_ = false;
+    std::array<std::optional<ObjError>, 3> bad_element_;
 };
 
-/// The chunk's relative indices become indices from 0. False if one is out of range.
+/// The chunk's relative indices become indices from 0, or kObjInvalid. False if some do.
 bool Assembly::resolve(ObjChunk& chunk) const {
     const ObjCounts before = counts_of(contents_.scene);
     bool good = true;
     const auto resolve_index = [&](std::uint32_t& index, ObjAttribute attribute) {
-        if (index == kAbsent || index < kObjRelative) return;
+        if (index >= kObjInvalid || index < kObjRelative) return;
         const std::uint64_t place = std::uint64_t{before[attribute]} + (index - kObjRelative);
-        good &= place >= kObjRelativeBias;
-        index = static_cast<std::uint32_t>(place - kObjRelativeBias);
+        const bool in_range = place >= kObjRelativeBias;
+        index = in_range ? static_cast<std::uint32_t>(place - kObjRelativeBias) : kObjInvalid;
+        good &= in_range;
     };
     for (ObjTriangle& triangle : chunk.triangles) {
         for (Corner& corner : triangle) {
@@ -105,7 +119,8 @@ bool Assembly::resolve(ObjChunk& chunk) const {
 
 void Assembly::append_chunk(ObjChunk& chunk, std::size_t text_bytes_left) {
     if (chunk.error) throw_at(text_, name_, *chunk.error);
-    if (chunk.has_relative && !resolve(chunk)) relative_out_of_range_ = true;
+    has_invalid_ |= chunk.has_invalid;
+    if (chunk.has_relative && !resolve(chunk)) has_invalid_ = true;
     append_materials(chunk);
     append_notes(chunk);
     append_arrays(chunk, text_bytes_left);
@@ -129,12 +144,12 @@ void Assembly::append_arrays(const ObjChunk& chunk, std::size_t text_bytes_left)
 
 std::uint32_t Assembly::material_in_use() {
     if (material_id_ == kAbsent) {
-        auto& materials = contents_.scene.materials;
-        const auto [entry, is_new] =
-            material_ids_.try_emplace(material_use_.name, count32(materials));
+        auto& names = contents_.material_names;
+        const auto [entry, is_new] = material_ids_.try_emplace(material_use_.name, count32(names));
         if (is_new) {
-            materials.emplace_back().name = material_use_.name;
-            contents_.material_offsets.push_back(material_use_.offset);
+            names.push_back(material_use_.name.value_or(""));
+            auto& offset = contents_.material_offsets.emplace_back();
+            if (material_use_.name) offset = material_use_.offset;
         }
         material_id_ = entry->second;
     }
@@ -167,23 +182,115 @@ void Assembly::append_notes(const ObjChunk& chunk) {
         use.first_triangle += first_triangle;
         contents_.smoothing_uses.push_back(use);
     }
-    for (const ObjStatement& statement : chunk.unsupported) {
-        const bool known =
-            std::any_of(contents_.unsupported.begin(), contents_.unsupported.end(),
-                        [&](const ObjStatement& other) { return other.words == statement.words; });
-        if (!known) contents_.unsupported.push_back(statement);
+    for (const ObjNote& note : chunk.notes) add_note(notes_, note);
+    for (std::size_t i = 0; i < bad_element_.size(); ++i) {
+        if (!bad_element_[i]) bad_element_[i] = chunk.bad_element[i];
     }
     auto& libraries = contents_.libraries;
     libraries.insert(libraries.end(), chunk.libraries.begin(), chunk.libraries.end());
-    auto& short_faces = contents_.short_faces;
-    short_faces.insert(short_faces.end(), chunk.short_faces.begin(), chunk.short_faces.end());
     contents_.lacks_normals |= chunk.lacks_normals;
 }
 
-bool Assembly::in_range() const {
+/// Whether all elements are numbers, and all indices in range.
+bool Assembly::all_good() const {
     const ObjCounts counts = counts_of(contents_.scene);
-    return !relative_out_of_range_ && max_index_[0] <= counts[0] && max_index_[1] <= counts[1] &&
-           max_index_[2] <= counts[2];
+    return !has_invalid_ && !bad_element_[kObjUv] && !bad_element_[kObjNormal] &&
+           max_index_[0] <= counts[0] && max_index_[1] <= counts[1] && max_index_[2] <= counts[2];
+}
+
+/// Parses the statement of a triangle again, now that the bounds of its indices are known.
+Assembly::Face Assembly::parse_face(std::size_t triangle) const {
+    ObjIndexBounds bounds{.before = {}, .total = counts_of(contents_.scene), .known = true};
+    ObjChunk chunk;
+    std::size_t begin = 0, end = 0;
+    for (const std::size_t bytes : {chunk_bytes_, std::size_t{1}}) {
+        for (;; begin = end) {
+            end = obj_chunk_end(text_, begin, bytes);
+            chunk.clear();
+            parse_obj_chunk(text_, begin, end, ObjIndexBounds{}, chunk);
+            if (triangle < chunk.triangles.size()) break;
+            triangle -= chunk.triangles.size();
+            bounds.before[kObjPosition] += count32(chunk.positions);
+            bounds.before[kObjUv] += count32(chunk.uvs);
+            bounds.before[kObjNormal] += count32(chunk.normals);
+        }
+    }
+    chunk.clear();
+    parse_obj_chunk(text_, begin, end, bounds, chunk);
+    return {begin, std::move(chunk)};
+}
+
+void Assembly::warn_of_missing(ObjAttribute attribute, std::size_t count,
+                               std::size_t first_triangle) {
+    const std::optional<ObjError>& element = bad_element_[attribute];
+    const bool is_normal = attribute == kObjNormal;
+    const char* const name = is_normal ? "normal" : "texture coordinate";
+    if (count == 0) {
+        if (!element) return;
+        contents_.warnings.push_back(
+            {element->offset, fmt::format("{}; no corner has this {}", element->what, name)});
+        return;
+    }
+    const Face face = parse_face(first_triangle);
+    const std::optional<ObjError>& index = face.parsed.bad_index[attribute];
+    const std::string why =
+        index ? index->what
+              : fmt::format("line {}: {}", line_number(text_, element->offset), element->what);
+    contents_.warnings.push_back(
+        {face.offset, fmt::format("{} {} a {} that is missing; {} ({})", count,
+                                  count == 1 ? "corner has" : "corners have", name,
+                                  is_normal ? "made" : "0 is used", why)});
+}
+
+/// Makes what is no number, or not there, absent.
+template <typename T>
+void Assembly::mend(ObjAttribute attribute, std::uint32_t Corner::*index,
+                    std::vector<T>& elements) {
+    auto polygon = contents_.polygons.begin();
+    std::size_t count = 0, first_triangle = 0;
+    auto& corners = contents_.scene.corners;
+    for (std::size_t t = 0; t < corners.size() / 3; ++t) {
+        // A fan states the corners of its other triangles but for the last again.
+        if (polygon != contents_.polygons.end() &&
+            t == polygon->first_triangle + polygon->corner_count - 2) {
+            ++polygon;
+        }
+        const bool goes_on = polygon != contents_.polygons.end() && t > polygon->first_triangle;
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::uint32_t& i = corners[3 * t + k].*index;
+            if (i == kAbsent || (i < elements.size() && !std::isnan(elements[i].x))) continue;
+            i = kAbsent;
+            if (goes_on && k < 2) continue;
+            if (count++ == 0) first_triangle = t;
+        }
+    }
+    for (T& element : elements) {
+        if (std::isnan(element.x)) element = T{0.0f};
+    }
+    contents_.lacks_normals |= attribute == kObjNormal && count > 0;
+    warn_of_missing(attribute, count, first_triangle);
+}
+
+void Assembly::mend() {
+    SourceScene& scene = contents_.scene;
+    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
+        if (scene.corners[i].position < scene.positions.size()) continue;
+        const Face face = parse_face(i / 3);
+        throw_at(text_, name_, face.parsed.error.value());
+    }
+    mend(kObjUv, &Corner::uv, scene.uvs);
+    mend(kObjNormal, &Corner::normal, scene.normals);
+}
+
+ObjContents Assembly::finish() && {
+    if (!all_good()) mend();
+    for (const ObjNote& note : notes_) {
+        const std::string first = note.word.empty() ? "" : ", the first " + note.word;
+        contents_.warnings.push_back(
+            {note.offset, fmt::format("{}{} ({} in all)", note.kind, first, note.count)});
+    }
+    std::ranges::stable_sort(contents_.warnings, {}, &ObjError::offset);
+    return std::move(contents_);
 }
 
 /// Gives back the memory of text[begin, end), of which nothing will be read soon, save for the page
@@ -244,33 +351,12 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, Assembly& asse
                                tbb::make_filter<Piece*, void>(filter_mode::serial_in_order, take));
 }
 
-/// Parses everything again to find the statement with an index out of range.
-[[noreturn]] void throw_index_error(std::string_view text, const std::string& name,
-                                    std::size_t chunk_bytes, const ObjCounts& total) {
-    ObjIndexBounds bounds{.before = {}, .total = total};
-    ObjChunk chunk;
-    for (std::size_t begin = 0; begin < text.size();) {
-        const std::size_t end = obj_chunk_end(text, begin, chunk_bytes);
-        chunk.clear();
-        parse_obj_chunk(text, begin, end, bounds, chunk);
-        if (chunk.error) throw_at(text, name, *chunk.error);
-        bounds.before[kObjPosition] += count32(chunk.positions);
-        bounds.before[kObjUv] += count32(chunk.uvs);
-        bounds.before[kObjNormal] += count32(chunk.normals);
-        begin = end;
-    }
-    throw BakeError(name + ": has an index that is out of range");
-}
-
 }  // namespace
 
 ObjContents parse_obj(std::string_view text, const std::string& name, std::size_t chunk_bytes) {
-    Assembly assembly(text, name);
+    Assembly assembly(text, name, chunk_bytes);
     parse_pieces(text, chunk_bytes, assembly);
-    const bool in_range = assembly.in_range();
-    ObjContents contents = std::move(assembly).finish();
-    if (!in_range) throw_index_error(text, name, chunk_bytes, counts_of(contents.scene));
-    return contents;
+    return std::move(assembly).finish();
 }
 
 }  // namespace bake

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,22 +16,23 @@ namespace bake {
 /// What an OBJ states. Indices are from 0, all in range. The result does not depend on the size of
 /// the pieces or on the number of threads.
 struct ObjContents {
-    /// Positions, normals (of length 1, or 0), uvs, corners and triangle_material are filled; the
-    /// materials have only their names, in order of first use.
+    /// Positions, normals (of length 1, or 0), uvs, corners and triangle_material are filled.
     SourceScene scene;
     std::vector<ObjPolygon> polygons;             ///< faces of more than three corners, as fans
     std::vector<ObjSmoothingUse> smoothing_uses;  ///< in the order of their triangles
-    std::vector<std::size_t> material_offsets;    ///< of the first `usemtl` of each material
-    std::vector<ObjStatement> libraries;          ///< mtllib
-    std::vector<ObjStatement> unsupported;        ///< the first of each keyword
-    std::vector<std::size_t> short_faces;         ///< offsets of faces that were skipped
-    bool lacks_normals = false;  ///< some corner states no normal, or some normal is 0
+    std::vector<std::string> material_names;      ///< in order of first use
+    /// Of the first `usemtl` of each material; none for that of faces before any.
+    std::vector<std::optional<std::size_t>> material_offsets;
+    std::vector<ObjStatement> libraries;  ///< mtllib
+    std::vector<ObjError> warnings;       ///< in the order of the text
+    bool lacks_normals = false;           ///< some corner states no normal, or some normal is 0
 };
 
 /// Parses `text` in pieces of about `chunk_bytes`, on as many threads as TBB is allowed; `name` is
 /// used in messages. Memory mapped for `text` is given back as the parsing goes on (it must be a
 /// read-only mapping of a file). Throws BakeError at the first malformed statement, then at the
-/// first index out of range.
+/// first index of a position that is out of range. A UV or a normal whose index is out of range, or
+/// whose line holds no finite numbers, is absent, with a warning.
 ObjContents parse_obj(std::string_view text, const std::string& name, std::size_t chunk_bytes);
 
 }  // namespace bake

@@ -29,7 +29,11 @@ inline constexpr std::uint32_t kMaxObjDistance = 0x2000'0000;
 struct ObjIndexBounds {
     ObjCounts before{kMaxObjDistance, kMaxObjDistance, kMaxObjDistance};
     ObjCounts total{kMaxObjElements, kMaxObjElements, kMaxObjElements};
+    bool known = false;  ///< so that what is out of range can be reported
 };
+
+/// An index that is out of range whatever the rest of the text holds.
+inline constexpr std::uint32_t kObjInvalid = kAbsent - 1;
 
 /// An index of a corner that counts back from the elements stated so far is held as
 /// kObjRelative + kObjRelativeBias + its place from the start of the piece's own elements.
@@ -42,11 +46,11 @@ struct ObjPolygon {
     std::uint32_t corner_count;
 };
 
-/// From `first_triangle` on, this material is in use (empty: none).
+/// From `first_triangle` on, this material is in use.
 struct ObjMaterialUse {
-    std::uint32_t first_triangle;
-    std::string name;
-    std::size_t offset;  ///< of the statement in the text
+    std::uint32_t first_triangle = 0;
+    std::optional<std::string> name;  ///< none before the first `usemtl`
+    std::size_t offset = 0;           ///< of the statement in the text
 };
 
 /// From `first_triangle` on, this smoothing group is in use.
@@ -66,6 +70,23 @@ struct ObjError {
     std::string what;
 };
 
+/// What is left out or odd, and how often.
+struct ObjNote {
+    std::string kind;    ///< what a message says of all
+    std::string word;    ///< of the first, if it helps
+    std::size_t offset;  ///< of the first one's statement
+    std::size_t count;
+};
+
+/// Counts it with those of its kind.
+void add_note(std::vector<ObjNote>& notes, const ObjNote& note);
+
+/// What a `v` line states behind the position.
+struct ObjColor {
+    std::uint32_t position;  ///< index from 0, from the start of the piece's own
+    glm::vec3 color;         ///< as stated
+};
+
 using ObjTriangle = std::array<Corner, 3>;
 
 /// Where ObjChunk::text_bytes counts faces; attributes are counted by ObjAttribute.
@@ -81,19 +102,23 @@ struct ObjChunk {
     }
 
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec2> uvs;
-    std::vector<glm::vec3> normals;  ///< of length 1, or 0
-    /// Indices are from 0 or relative, see kObjRelative.
+    std::vector<glm::vec2> uvs;      ///< NaN where the line holds no finite number
+    std::vector<glm::vec3> normals;  ///< of length 1, or 0; or NaN in the same way
+    std::vector<ObjColor> colors;
+    /// Indices are from 0 or relative, see kObjRelative; or kObjInvalid.
     RawVector<ObjTriangle> triangles;
     std::vector<ObjPolygon> polygons;
     std::vector<ObjMaterialUse> material_uses;
     std::vector<ObjSmoothingUse> smoothing_uses;
     std::vector<ObjStatement> libraries;
-    std::vector<ObjStatement> unsupported;    ///< `words` is the keyword
-    std::vector<std::size_t> short_faces;     ///< offsets of faces with fewer than three corners
+    std::vector<ObjNote> notes;
+    /// By ObjAttribute: the first line of a UV or a normal that is no finite number, and, where the
+    /// bounds are known, the first index of one that is out of range.
+    std::array<std::optional<ObjError>, 3> bad_element, bad_index;
     ObjCounts max_index{};                    ///< the largest that is not relative, from 1
     std::array<std::size_t, 4> text_bytes{};  ///< of v, vt, vn and f lines; see kObjFaceText
     bool has_relative = false;
+    bool has_invalid = false;       ///< some index is kObjInvalid
     bool lacks_normals = false;     ///< some corner states no normal, or some normal is 0
     std::optional<ObjError> error;  ///< the first one; nothing after it is read
 

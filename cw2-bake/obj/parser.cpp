@@ -5,17 +5,23 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "cw2-bake/base/text_lines.h"
+#include "cw2-bake/obj/left_out.h"
 #include "cw2-bake/obj/plain_lines.h"
 
 namespace bake {
 namespace {
 
 constexpr std::array<const char*, 3> kElementNames{"vertex", "texture coordinate", "normal"};
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kFullByte = 255.0f;
 
 /// What is wrong with the statement at hand; does not leave this file.
 struct Failure {
@@ -34,15 +40,27 @@ bool is_continuation(const char* p) {
     return *p == '\\' && is_line_end(p[1]);
 }
 
+const char* word_end(const char* p) {
+    while (!is_blank(*p) && !is_line_end(*p)) ++p;
+    return p;
+}
+
 std::string word_at(const char* p) {
-    const char* end = p;
-    while (!is_blank(*end) && !is_line_end(*end)) ++end;
-    return in_quotes({p, end});
+    return in_quotes({p, word_end(p)});
 }
 
 const char* skip_blanks(const char* p) {
     while (is_blank(*p)) ++p;
     return p;
+}
+
+/// What stands where a number should.
+enum class Found { number, line_continues, nothing, no_number, no_finite_number };
+
+std::string problem(Found found, const char* p) {
+    if (found == Found::nothing) return "a number is missing";
+    return word_at(p) +
+           (found == Found::no_number ? " is not a number" : " is not a finite number");
 }
 
 /// Every pointer into the text stands before a line end, which stops all scanning; `limit_` is the
@@ -60,6 +78,7 @@ class ChunkParser {
     const char* position(const char* p);
     const char* uv(const char* p);
     const char* normal(const char* p);
+    void color(const char* p);
     const char* face(const char* p);
     void other(std::string_view statement);
     void smoothing(std::string_view words);
@@ -67,8 +86,13 @@ class ChunkParser {
     const char* corner(const char* p, Corner& corner);
     template <ObjAttribute attribute>
     const char* index(const char* p, std::uint32_t local_count, std::uint32_t& value);
-    [[noreturn]] void fail_range(const char* p, ObjAttribute attribute, std::uint32_t local_count);
-    const char* number(const char* p, float& value);
+    void bad_element(std::string what, ObjAttribute attribute);
+    void bad_index(std::string what, ObjAttribute attribute, std::uint32_t& result);
+    std::string out_of_range(const char* p, ObjAttribute attribute, std::uint32_t local_count);
+    Found number(const char*& p, float& value) const;
+    template <typename Vector>
+    Found vector(const char*& p, Vector& v) const;
+    void note(std::string_view kind, std::string_view word = {});
     const char* rest(const char* p);
     const char* after_line(const char* p);
     std::uint32_t triangle_count() const {
@@ -122,6 +146,8 @@ const char* ChunkParser::statement(const char* p) {
         if (p[1] == 'n' && ends_word(p[2])) return normal(p + 2);
     } else if (*p == 'f' && ends_word(p[1])) {
         return face(p + 1);
+    } else if (*p == 'f' && p[1] == 'o' && ends_word(p[2])) {
+        return face(p + 2);  // an older name
     } else if (is_line_end(*p) || *p == '#') {
         return after_line(p);
     }
@@ -144,23 +170,42 @@ const char* ChunkParser::rest(const char* p) {
     return after_line(p);
 }
 
-const char* ChunkParser::number(const char* p, float& value) {
+/// Moves `p` behind the number, or to what stands in its place.
+Found ChunkParser::number(const char*& p, float& value) const {
     p = skip_blanks(p);
-    if (is_continuation(p)) return nullptr;
-    if (is_line_end(*p) || *p == '#') fail("a number is missing");
+    if (is_continuation(p)) return Found::line_continues;
+    if (is_line_end(*p) || *p == '#') return Found::nothing;
     const char* digits = *p == '+' && p[1] != '-' ? p + 1 : p;
     const auto [end, error] = fast_float::from_chars(digits, limit_, value);
-    if (error != std::errc() || !ends_word(*end)) fail(word_at(p) + " is not a number");
-    if (!std::isfinite(value)) fail(word_at(p) + " is not a finite number");
+    // Microsoft's C library writes 1.#INF, -1.#IND and 1.#QNAN.
+    const bool is_special = *end == '#' && end[-1] == '.' && std::isalpha(end[1]);
+    if (error != std::errc() || (!ends_word(*end) && !is_special)) return Found::no_number;
+    if (is_special || !std::isfinite(value)) return Found::no_finite_number;
     value += 0.0f;  // -0 becomes +0
-    return end;
+    p = end;
+    return Found::number;
+}
+
+template <typename Vector>
+Found ChunkParser::vector(const char*& p, Vector& v) const {
+    Found found = Found::number;
+    for (int i = 0; i < Vector::length() && found == Found::number; ++i) found = number(p, v[i]);
+    return found;
+}
+
+void ChunkParser::note(std::string_view kind, std::string_view word) {
+    add_note(chunk_.notes, {std::string(kind), std::string(word), offset_, 1});
 }
 
 const char* ChunkParser::position(const char* p) {
     const char* start = p;
     glm::vec3 v;
-    if (!(p = number(p, v.x)) || !(p = number(p, v.y)) || !(p = number(p, v.z))) return nullptr;
+    const Found found = vector(p, v);
+    if (found == Found::line_continues) return nullptr;
+    if (found != Found::number) fail(problem(found, p));
+    const char* const behind = p;
     if (!(p = rest(p))) return nullptr;
+    color(behind);
     chunk_.positions.push_back(v);
     chunk_.text_bytes[kObjPosition] += static_cast<std::size_t>(p - start);
     return p;
@@ -169,12 +214,15 @@ const char* ChunkParser::position(const char* p) {
 const char* ChunkParser::uv(const char* p) {
     const char* start = p;
     glm::vec2 v{0.0f};
-    if (!(p = number(p, v.x))) return nullptr;
-    p = skip_blanks(p);
-    const bool one_dimensional = is_line_end(*p) || *p == '#';
-    if (!one_dimensional && !(p = number(p, v.y))) return nullptr;
+    Found found = number(p, v.x);
+    if (found == Found::number) {
+        found = number(p, v.y);
+        if (found == Found::nothing) found = Found::number;  // one dimension
+    }
+    const char* const stopped = p;
     if (!(p = rest(p))) return nullptr;
-    chunk_.uvs.push_back(v);
+    if (found != Found::number) bad_element(problem(found, stopped), kObjUv);
+    chunk_.uvs.push_back(found == Found::number ? v : glm::vec2{kNaN});
     chunk_.text_bytes[kObjUv] += static_cast<std::size_t>(p - start);
     return p;
 }
@@ -182,24 +230,65 @@ const char* ChunkParser::uv(const char* p) {
 const char* ChunkParser::normal(const char* p) {
     const char* start = p;
     glm::vec3 v;
-    if (!(p = number(p, v.x)) || !(p = number(p, v.y)) || !(p = number(p, v.z))) return nullptr;
+    const Found found = vector(p, v);
+    const char* const stopped = p;
     if (!(p = rest(p))) return nullptr;
-    chunk_.add_normal(v);
+    if (found != Found::number) bad_element(problem(found, stopped), kObjNormal);
+    chunk_.add_normal(found == Found::number ? v : glm::vec3{kNaN});
     chunk_.text_bytes[kObjNormal] += static_cast<std::size_t>(p - start);
     return p;
 }
 
-void ChunkParser::fail_range(const char* p, ObjAttribute attribute, std::uint32_t local_count) {
+/// x y z r g b, the way most programs add colours, or r g b and alpha. Fewer numbers are a weight,
+/// which is of no use here.
+void ChunkParser::color(const char* p) {
+    std::array<float, 4> values{};
+    std::size_t count = 0;
+    bool is_good = true;
+    for (; count < values.size(); ++count) {
+        const Found found = number(p, values[count]);
+        if (found == Found::nothing) break;
+        if (found == Found::number) continue;
+        is_good = false;
+        p = word_end(p);
+    }
+    if (count < 3) return;
+    if (!is_good) return note("vertex colours that are no finite numbers are left out");
+    const glm::vec3 color{values[0], values[1], values[2]};
+    chunk_.colors.push_back({static_cast<std::uint32_t>(chunk_.positions.size()), color});
+    if (count == 4 && values[3] != 1 && values[3] != kFullByte) {
+        note("the alpha of vertex colours is left out");
+    }
+}
+
+void ChunkParser::bad_element(std::string what, ObjAttribute attribute) {
+    auto& first = chunk_.bad_element[attribute];
+    if (!first) first = ObjError{offset_, std::move(what)};
+}
+
+/// Without its position a corner is none; without anything else it goes.
+void ChunkParser::bad_index(std::string what, ObjAttribute attribute, std::uint32_t& result) {
+    if (bounds_.known) {
+        if (attribute == kObjPosition) fail(std::move(what));
+        auto& first = chunk_.bad_index[attribute];
+        if (!first) first = ObjError{offset_, std::move(what)};
+    }
+    result = kObjInvalid;
+    chunk_.has_invalid = true;
+}
+
+std::string ChunkParser::out_of_range(const char* p, ObjAttribute attribute,
+                                      std::uint32_t local_count) {
     const char* end = p + 1;
     while (*end >= '0' && *end <= '9') ++end;
     const std::string_view digits(p, end);
     const char* name = kElementNames[attribute];
     if (*p != '-') {
-        fail(fmt::format("{} index {} is out of range: the file has {}", name, digits,
-                         bounds_.total[attribute]));
+        return fmt::format("{} index {} is out of range: the file has {}", name, digits,
+                           bounds_.total[attribute]);
     }
-    fail(fmt::format("{} index {} is out of range: {} come before it", name, digits,
-                     std::uint64_t{bounds_.before[attribute]} + local_count));
+    return fmt::format("{} index {} is out of range: {} come before it", name, digits,
+                       std::uint64_t{bounds_.before[attribute]} + local_count);
 }
 
 template <ObjAttribute attribute>
@@ -214,16 +303,17 @@ const char* ChunkParser::index(const char* p, std::uint32_t local_count, std::ui
     }
     if (p == digits) fail(word_at(start) + " is not an index");
     constexpr std::ptrdiff_t kSafeDigits = 18;
-    if (p - digits > kSafeDigits) fail_range(start, attribute, local_count);
-    if (value == 0) fail(fmt::format("{} index 0: indices count from 1", kElementNames[attribute]));
-    if (relative) {
-        if (value > std::uint64_t{bounds_.before[attribute]} + local_count) {
-            fail_range(start, attribute, local_count);
-        }
+    const bool is_wild = p - digits > kSafeDigits;
+    const std::uint64_t before = std::uint64_t{bounds_.before[attribute]} + local_count;
+    if (!is_wild && value == 0) {
+        bad_index(fmt::format("{} index 0: indices count from 1", kElementNames[attribute]),
+                  attribute, result);
+    } else if (is_wild || value > (relative ? before : bounds_.total[attribute])) {
+        bad_index(out_of_range(start, attribute, local_count), attribute, result);
+    } else if (relative) {
         result = kObjRelative + kObjRelativeBias + local_count - static_cast<std::uint32_t>(value);
         chunk_.has_relative = true;
     } else {
-        if (value > bounds_.total[attribute]) fail_range(start, attribute, local_count);
         const auto from_one = static_cast<std::uint32_t>(value);
         chunk_.max_index[attribute] = std::max(chunk_.max_index[attribute], from_one);
         result = from_one - 1;
@@ -264,26 +354,28 @@ const char* ChunkParser::face(const char* p) {
             return nullptr;
         }
         p = corner(p, current);
-        chunk_.lacks_normals |= current.normal == kAbsent;
+        chunk_.lacks_normals |= current.normal >= kObjInvalid;
         if (count == 0) first = current;
         if (count >= 2) chunk_.triangles.push_back({first, previous, current});
         previous = current;
     }
-    if (count < 3) chunk_.short_faces.push_back(offset_);
+    if (count < 3) note("a face of fewer than three corners is left out");
     if (count > 3) chunk_.polygons.push_back({first_triangle, count});
     p = after_line(p);
     chunk_.text_bytes[kObjFaceText] += static_cast<std::size_t>(p - start);
     return p;
 }
 
+/// Without a word it is on: so ZBrush writes it.
 void ChunkParser::smoothing(std::string_view words) {
+    const std::string_view word = take_word(words);
     std::uint32_t group = 0;
-    if (words == "on") {
+    if (word.empty() || word.starts_with('#') || word == "on") {
         group = 1;
-    } else if (words != "off") {
-        const auto [end, error] = std::from_chars(words.begin(), words.end(), group);
-        if (error != std::errc() || end != words.end()) {
-            fail(in_quotes(words) + " is not a smoothing group");
+    } else if (word != "off") {
+        const auto [end, error] = std::from_chars(word.begin(), word.end(), group);
+        if (error != std::errc() || end != word.end()) {
+            return note("what is no smoothing group leaves smoothing as it was", in_quotes(word));
         }
     }
     chunk_.smoothing_uses.push_back({triangle_count(), group});
@@ -297,30 +389,12 @@ void ChunkParser::other(std::string_view words) {
         chunk_.libraries.push_back({offset_, std::string(words)});
     } else if (keyword == "s") {
         smoothing(words);
-    } else if (keyword == "curv" || keyword == "curv2" || keyword == "surf" || keyword == "call") {
-        chunk_.unsupported.push_back({offset_, std::string(keyword)});
+    } else if (const auto left_out = obj_left_out(keyword, words)) {
+        note(left_out->kind, left_out->word);
     }
 }
 
 }  // namespace
-
-void ObjChunk::clear() {
-    positions.clear();
-    uvs.clear();
-    normals.clear();
-    triangles.clear();
-    polygons.clear();
-    material_uses.clear();
-    smoothing_uses.clear();
-    libraries.clear();
-    unsupported.clear();
-    short_faces.clear();
-    max_index = {};
-    text_bytes = {};
-    has_relative = false;
-    lacks_normals = false;
-    error.reset();
-}
 
 std::size_t obj_chunk_end(std::string_view text, std::size_t begin, std::size_t size) {
     if (size >= text.size() - begin) return text.size();

@@ -6,6 +6,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <unordered_map>
@@ -74,6 +76,41 @@ void prepare_missing_normals(const std::vector<ObjSmoothingUse>& uses, SourceSce
     }
 }
 
+/// Gives corners of materials that transform their UVs new ones.
+void transform_uvs(const std::vector<MtlMaterial>& materials, const std::string& name,
+                   const Warn& warn, SourceScene& scene) {
+    const auto transforms = [](const MtlMaterial& material) {
+        return material.transform != MtlTransform{};
+    };
+    if (std::ranges::none_of(materials, transforms)) return;
+    std::unordered_map<std::uint64_t, std::uint32_t> made;  // by material and index
+    std::size_t too_large = 0;
+    const auto transformed = [&](const MtlTransform& transform, std::uint32_t index) {
+        const glm::dvec2 exact = glm::dvec2{transform.scale} * glm::dvec2{scene.uvs[index]} +
+                                 glm::dvec2{transform.offset};
+        const glm::vec2 uv = glm::vec2{exact} + 0.0f;  // no -0
+        if (std::isfinite(uv.x) && std::isfinite(uv.y)) return uv;
+        ++too_large;
+        return glm::vec2{0.0f};
+    };
+    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
+        const std::uint32_t material = scene.triangle_material[i / 3];
+        const MtlTransform& transform = materials[material].transform;
+        std::uint32_t& index = scene.corners[i].uv;
+        if (index == kAbsent || transform == MtlTransform{}) continue;
+        const auto [entry, is_new] = made.try_emplace(std::uint64_t{material} << 32 | index,
+                                                      static_cast<std::uint32_t>(scene.uvs.size()));
+        if (is_new) scene.uvs.push_back(transformed(transform, index));
+        index = entry->second;
+    }
+    if (too_large > 0) {
+        warn(
+            fmt::format("{}: -s or -o take texture coordinates out of the range of floats; 0 is "
+                        "used ({} in all)",
+                        name, too_large));
+    }
+}
+
 /// The MTL files of an OBJ, and what of them its materials name.
 class Libraries {
  public:
@@ -82,15 +119,18 @@ class Libraries {
               std::vector<std::filesystem::path>& files)
         : obj_(obj), text_(text), warn_(warn), files_(files) {}
 
-    void read(const std::vector<ObjStatement>& statements, std::vector<SourceMaterial>& materials);
-    void warn_of_unknown(const std::vector<SourceMaterial>& materials,
-                         const std::vector<std::size_t>& offsets) const;
+    /// `offsets` are those of ObjContents::material_offsets.
+    void read(const std::vector<ObjStatement>& statements,
+              const std::vector<std::optional<std::size_t>>& offsets,
+              std::vector<MtlMaterial>& materials);
+    void warn_of_unknown(const std::vector<MtlMaterial>& materials,
+                         const std::vector<std::optional<std::size_t>>& offsets) const;
 
  private:
     std::vector<std::string> names(const ObjStatement& statement) const;
     std::filesystem::path resolve(std::string_view name) const;
     void read_library(const std::string& name, const std::string& place,
-                      std::vector<SourceMaterial>& materials);
+                      std::vector<MtlMaterial>& materials);
     std::string place(std::size_t offset) const {
         return fmt::format("{}:{}", obj_.string(), line_number(text_, offset));
     }
@@ -123,7 +163,7 @@ std::vector<std::string> Libraries::names(const ObjStatement& statement) const {
 }
 
 void Libraries::read_library(const std::string& name, const std::string& stated_in,
-                             std::vector<SourceMaterial>& materials) {
+                             std::vector<MtlMaterial>& materials) {
     const std::filesystem::path path = resolve(name);
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) {
@@ -134,9 +174,9 @@ void Libraries::read_library(const std::string& name, const std::string& stated_
     const auto wanted = [&](std::string_view material) { return unknown_.contains(material); };
     files_.push_back(path);
     try {
-        for (SourceMaterial& material : read_mtl(path, wanted, warn_)) {
-            const auto entry = unknown_.find(material.name);
-            SourceMaterial& named = materials[entry->second];
+        for (MtlMaterial& material : read_mtl(path, wanted, warn_)) {
+            const auto entry = unknown_.find(material.source.name);
+            MtlMaterial& named = materials[entry->second];
             unknown_.erase(entry);
             named = std::move(material);
         }
@@ -147,9 +187,10 @@ void Libraries::read_library(const std::string& name, const std::string& stated_
 }
 
 void Libraries::read(const std::vector<ObjStatement>& statements,
-                     std::vector<SourceMaterial>& materials) {
+                     const std::vector<std::optional<std::size_t>>& offsets,
+                     std::vector<MtlMaterial>& materials) {
     for (std::size_t i = 0; i < materials.size(); ++i) {
-        if (!materials[i].name.empty()) unknown_.emplace(materials[i].name, i);
+        if (offsets[i]) unknown_.emplace(materials[i].source.name, i);
     }
     std::vector<std::string> done;
     for (const ObjStatement& statement : statements) {
@@ -161,27 +202,16 @@ void Libraries::read(const std::vector<ObjStatement>& statements,
     }
 }
 
-/// The warning of a missing library covers the materials that may be in it.
-void Libraries::warn_of_unknown(const std::vector<SourceMaterial>& materials,
-                                const std::vector<std::size_t>& offsets) const {
+/// The warning of a missing library covers the materials that may be in it. A `usemtl` without a
+/// name asks for nothing but what such a `newmtl` holds, if there is one.
+void Libraries::warn_of_unknown(const std::vector<MtlMaterial>& materials,
+                                const std::vector<std::optional<std::size_t>>& offsets) const {
     if (some_missing_) return;
     for (std::size_t i = 0; i < materials.size(); ++i) {
-        if (!unknown_.contains(materials[i].name)) continue;
+        if (materials[i].source.name.empty() || !unknown_.contains(materials[i].source.name))
+            continue;
         warn_(fmt::format("{}: no material library defines {}; a default is used",
-                          place(offsets[i]), in_quotes(materials[i].name)));
-    }
-}
-
-void warn_of_left_out(const ObjContents& contents, std::string_view text, const std::string& name,
-                      const Warn& warn) {
-    for (const ObjStatement& statement : contents.unsupported) {
-        warn(fmt::format("{}:{}: '{}' is not supported and left out", name,
-                         line_number(text, statement.offset), statement.words));
-    }
-    if (!contents.short_faces.empty()) {
-        warn(fmt::format("{}:{}: a face of fewer than three corners is left out ({} in all)", name,
-                         line_number(text, contents.short_faces.front()),
-                         contents.short_faces.size()));
+                          place(offsets[i].value()), in_quotes(materials[i].source.name)));
     }
 }
 
@@ -190,8 +220,8 @@ void warn_of_left_out(const ObjContents& contents, std::string_view text, const 
 SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::size_t chunk_bytes) {
     const common::MappedFile file = map_file(path);
     const std::string name = path.string();
-    const std::string_view text =
-        without_bom({reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()});
+    const std::string_view text = without_padding(
+        without_bom({reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()}));
     constexpr std::size_t kProbeBytes = 4096;
     if (text.substr(0, kProbeBytes).find('\0') != text.npos) {
         throw BakeError(name + ": is no OBJ: it holds binary data");
@@ -199,17 +229,25 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
 
     ObjContents contents = parse_obj(text, name, chunk_bytes);
     SourceScene& scene = contents.scene;
-    warn_of_left_out(contents, text, name, warn);
+    for (const ObjError& warning : contents.warnings) {
+        warn(fmt::format("{}:{}: {}", name, line_number(text, warning.offset), warning.what));
+    }
     if (scene.corners.empty()) throw BakeError(name + ": has no faces");
     triangulate_polygons(contents.polygons, scene);
     if (contents.lacks_normals) prepare_missing_normals(contents.smoothing_uses, scene);
 
     scene.files.push_back(path);
     Libraries libraries(path, text, warn, scene.files);
-    libraries.read(contents.libraries, scene.materials);
-    libraries.warn_of_unknown(scene.materials, contents.material_offsets);
-    for (SourceMaterial& material : scene.materials) {
-        if (material.name.empty()) material.name = "default";
+    std::vector<MtlMaterial> materials;
+    for (const std::string& material : contents.material_names) {
+        materials.push_back({.source = {.name = material}});
+    }
+    libraries.read(contents.libraries, contents.material_offsets, materials);
+    libraries.warn_of_unknown(materials, contents.material_offsets);
+    transform_uvs(materials, name, warn, scene);
+    for (MtlMaterial& material : materials) {
+        if (material.source.name.empty()) material.source.name = "default";
+        scene.materials.push_back(std::move(material.source));
     }
     return std::move(scene);
 }

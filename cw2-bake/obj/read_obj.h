@@ -10,9 +10,11 @@
 namespace bake {
 
 /// Reads an OBJ and the MTLs it names. Throws BakeError, with the line, for what cannot be read:
-/// no such file, no faces, an index out of range, a number that is not finite, a malformed
-/// statement. A missing MTL or material is a warning, and what cannot be drawn (curves, faces of
-/// fewer than three corners) is left out with one. Faces before any `usemtl` get a material
+/// no such file, no faces, a position that is no finite number, an index of one that is out of
+/// range, a malformed face. What is wrong with a normal, a UV, a colour or a smoothing group is a
+/// warning, and it is absent; a missing MTL or material is a warning, too, and what is not drawn
+/// (curves, lines, faces of fewer than three corners, unknown statements) is left out with one a
+/// kind. Faces before any `usemtl` get a material
 /// "default". The text is parsed in pieces of about `chunk_bytes`, on as many threads as TBB is
 /// allowed; the result depends on neither.
 SourceScene read_obj(const std::filesystem::path& path, const Warn& warn,

@@ -147,15 +147,19 @@ TEST(ObjPeer, ReadsAlteredFilesAlikeWhereItReadsThem) {
     int compared = 0;
     for (int i = 0; i < 1000; ++i) {
         const std::string text = altered(random_obj(random, 8, 6), random);
-        std::optional<bake::SourceScene> scene;
+        std::optional<Reading> reading;
         try {
-            scene = read(folder, text, 200).scene;
+            reading = read(folder, text, 200);
         } catch (const bake::BakeError&) {
             continue;  // the peer takes indices out of range
         }
+        const bool mended = std::ranges::any_of(reading->warnings, [](const std::string& warning) {
+            return warning.find("that is missing") != warning.npos;
+        });
+        if (mended) continue;  // of attributes, too
         const auto faces = read_with_peer(text);
         ASSERT_TRUE(faces) << text;
-        expect_same(text, *scene, *faces);
+        expect_same(text, reading->scene, *faces);
         if (HasFatalFailure()) return;
         ++compared;
     }

@@ -90,6 +90,15 @@ INSTANTIATE_TEST_SUITE_P(
         Twin{"smoothing_on", replaced(kPlain, "s 2", "s on"), replaced(kPlain, "s 2", "s 1")},
         Twin{"smoothing_mask", replaced(kPlain, "s 2", "s 4294967295"),
              replaced(kPlain, "s 2", "s \t4294967295 ")},
+        Twin{"smoothing_without_a_group", replaced(kPlain, "s 2", "s"),
+             replaced(kPlain, "s 2", "s 1")},
+        Twin{"smoothing_with_a_comment", replaced(kPlain, "s 2", "s 2 # two"), kPlain},
+        Twin{"smoothing_of_nonsense", replaced(kPlain, "s 2", "s 2\ns x\ns -1"), kPlain},
+        Twin{"nul_at_the_end", kPlain + std::string(3, '\0'), kPlain},
+        Twin{"nul_before_the_last_line_end",
+             kPlain.substr(0, kPlain.size() - 1) + std::string(1, '\0') + "\n", kPlain},
+        Twin{"control_z_at_the_end", kPlain + "\x1A\r\n" + std::string(600, '\0'), kPlain},
+        Twin{"face_outline", replaced(kPlain, "f 1 3", "fo 1 3"), kPlain},
         Twin{"long_line", replaced(kPlain, "f 1 3", "f 1" + std::string(300'000, ' ') + "3"),
              kPlain}),
     [](const auto& test) { return std::string(test.param.what); });
@@ -204,15 +213,151 @@ TEST(ReadObj, WarnsOfWhatIsMissingAndGoesOn) {
     EXPECT_EQ(read(folder, "mtllib folder.mtl\n" + faces).warnings.size(), 1u);
 }
 
-TEST(ReadObj, WarnsOnceOfEachThingItLeavesOut) {
+TEST(ReadObj, WarnsOnceOfEachKindOfThingItLeavesOut) {
+    const TempFolder folder;
+    const std::string text = kSquare +
+                             "f 1 2\nf\ncurv 0 1 1 2\nsurf 1 2\ncurv 0 1 1 3\nf 1 2 3\n"
+                             "l 1 2\np 1 2\nl 2 3\nbevel on\nlod 2\nfoo\nBar \x01\ns x\ns -1\n";
+    for (const std::size_t chunk : {1, 40, 1 << 18}) {
+        const auto reading = read(folder, text, chunk);
+        EXPECT_EQ(reading.warnings,
+                  (std::vector<std::string>{
+                      "scene.obj:5: a face of fewer than three corners is left out (2 in all)",
+                      "scene.obj:7: 'curv' is not supported and left out (2 in all)",
+                      "scene.obj:8: 'surf' is not supported and left out (1 in all)",
+                      "scene.obj:11: points and lines are left out (3 in all)",
+                      "scene.obj:14: 'bevel' is not supported and left out (1 in all)",
+                      "scene.obj:15: 'lod' is not supported and left out (1 in all)",
+                      "scene.obj:16: statements that are not known are left out, the first 'foo' "
+                      "(2 in all)",
+                      "scene.obj:18: what is no smoothing group leaves smoothing as it was, the "
+                      "first 'x' (2 in all)"}));
+        EXPECT_EQ(reading.scene.corners.size(), 3u);
+    }
+}
+
+TEST(ReadObj, SaysNothingOfWhatChangesNothing) {
     const auto reading =
-        read(kSquare + "f 1 2\nf\ncurv 0 1 1 2\nsurf 1 2\ncurv 0 1 1 3\nf 1 2 3\n");
-    ASSERT_EQ(reading.warnings.size(), 3u);
-    EXPECT_EQ(reading.warnings[0], "scene.obj:7: 'curv' is not supported and left out");
-    EXPECT_EQ(reading.warnings[1], "scene.obj:8: 'surf' is not supported and left out");
-    EXPECT_EQ(reading.warnings[2],
-              "scene.obj:5: a face of fewer than three corners is left out (2 in all)");
-    EXPECT_EQ(reading.scene.corners.size(), 3u);
+        read(kSquare +
+             "g a\no b\nmg 1 0.5\ng\nvp 1 2\nbevel off\nc_interp off\nd_interp off\nlod 0\n"
+             "usemap (null)\nusemap off\ncstype bspline\ndeg 3\nend\nv 1 2 3 0.5\nf 1 2 3\n"
+             "vt 0 0 0\nvn 0 0 0\ns off\n# l 1 2\n");
+    EXPECT_EQ(reading.warnings, std::vector<std::string>{});
+}
+
+struct Missing {
+    const char* what;
+    std::string text;  ///< behind a square, vt 0.5 0.5 and vn 0 0 1
+    std::string bad_corners, warning;
+};
+
+class MissingAttribute : public testing::TestWithParam<Missing> {};
+
+/// `bad_corners` has a digit a corner: 1 where it lacks what is tested.
+TEST_P(MissingAttribute, IsAbsentWithOneWarning) {
+    for (const std::size_t chunk : {1, 30, 1 << 18}) {
+        const TempFolder folder;
+        const auto reading =
+            read(folder, kSquare + "vt 0.5 0.5\nvn 0 0 1\n" + GetParam().text, chunk);
+        EXPECT_EQ(reading.warnings, std::vector<std::string>{"scene.obj:" + GetParam().warning});
+        const bool is_normal = GetParam().warning.find("normal") != std::string::npos;
+        std::string bad;
+        bool complete = true;
+        for (const bake::Corner& corner : reading.scene.corners) {
+            bad += (is_normal ? corner.normal : corner.uv) == kAbsent ? '1' : '0';
+            complete &= corner.normal != kAbsent;
+        }
+        EXPECT_EQ(bad, GetParam().bad_corners);
+        EXPECT_EQ(reading.scene.smoothing_group.empty(), complete);
+        for (const glm::vec3& n : reading.scene.normals) EXPECT_FALSE(std::isnan(n.x));
+        for (const glm::vec2& uv : reading.scene.uvs) EXPECT_FALSE(std::isnan(uv.x));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ReadObj, MissingAttribute,
+    testing::Values(
+        Missing{"large_uv", "f 1/1/1 2/2/1 3/9/1\n", "011",
+                "7: 2 corners have a texture coordinate that is missing; 0 is used (texture "
+                "coordinate index 2 is out of range: the file has 1)"},
+        Missing{"negative_uv", "f 1/-1/1 2/-1/1 3/-2/1\n", "001",
+                "7: 1 corner has a texture coordinate that is missing; 0 is used (texture "
+                "coordinate index -2 is out of range: 1 come before it)"},
+        Missing{"unsigned_minus_one", "f 1/4294967295/1 2/1/1 3/1/1\n", "100",
+                "7: 1 corner has a texture coordinate that is missing; 0 is used (texture "
+                "coordinate index 4294967295 is out of range: the file has 1)"},
+        Missing{"zero_normal", "f 1//1 2//1 3//1\nf 1//0 2//0 3//1\n", "000110",
+                "8: 2 corners have a normal that is missing; made (normal index 0: indices count "
+                "from 1)"},
+        Missing{"of_a_polygon", "f 1//9 2//1 3//9 4//9\n", "101111",
+                "7: 3 corners have a normal that is missing; made (normal index 9 is out of range: "
+                "the file has 1)"},
+        Missing{"nan", "vn nan nan nan\nvn 0 0 1\n# c\nf 1//3 2//2 3//3\n", "010",
+                "10: 1 corner has a normal that is missing; made (line 7: 'nan' is not a finite "
+                "number)"},
+        Missing{"microsoft", "vn 0 0 1.#QNAN\nf 1//2 2//1 3//1\n", "100",
+                "8: 1 corner has a normal that is missing; made (line 7: '1.#QNAN' is not a finite "
+                "number)"},
+        Missing{"microsoft_rounded", "vn 0 -1.#J 0\nf 1//2 2//1 3//1\n", "100",
+                "8: 1 corner has a normal that is missing; made (line 7: '-1.#J' is not a finite "
+                "number)"},
+        Missing{"new_microsoft", "vn -nan(ind) 0 0\nf 1//2 2//1 3//1\n", "100",
+                "8: 1 corner has a normal that is missing; made (line 7: '-nan(ind)' is not a "
+                "finite number)"},
+        Missing{
+            "infinite", "vt -inf 0\nf 1/2/1 2/1/1 3/1/1\n", "100",
+            "8: 1 corner has a texture coordinate that is missing; 0 is used (line 7: '-inf' is "
+            "not a finite number)"},
+        Missing{
+            "too_large", "vt 0 1e39\nf 1/2/1 2/1/1 3/1/1\n", "100",
+            "8: 1 corner has a texture coordinate that is missing; 0 is used (line 7: '1e39' is "
+            "not a finite number)"},
+        Missing{"no_number", "vt x\nf 1/2/1 2/1/1 3/1/1\n", "100",
+                "8: 1 corner has a texture coordinate that is missing; 0 is used (line 7: 'x' is "
+                "not a number)"},
+        Missing{"too_few", "vn 1 \\\n 0\nf 1//2 2//1 3//1\n", "100",
+                "9: 1 corner has a normal that is missing; made (line 7: a number is missing)"},
+        Missing{"unused", "vn 1 0\nf 1//1 2//1 3//1\n", "000",
+                "7: a number is missing; no corner has this normal"}),
+    [](const auto& test) { return std::string(test.param.what); });
+
+TEST(ReadObj, KeepsTheSmoothingOfMissingNormals) {
+    const auto scene = read(kSquare + "s 3\nf 1//1 2//1 3//1\n").scene;
+    EXPECT_EQ(scene.smoothing_group, std::vector<std::uint32_t>{3});
+}
+
+TEST(ReadObj, AnUnnamedMaterialIsOneThatIsNamedNothing) {
+    const TempFolder folder;
+    folder.write("m.mtl", "newmtl\nKd 1 0 0\nnewmtl b\nKd 0 1 0\n");
+    const std::string face = "f 1 2 3\n";
+    const auto reading =
+        read(folder, "mtllib m.mtl\n" + kSquare + face + "usemtl b\n" + face + "usemtl \n" + face);
+    EXPECT_EQ(reading.warnings, std::vector<std::string>{});
+    ASSERT_EQ(reading.scene.materials.size(), 3u);
+    EXPECT_EQ(reading.scene.materials[0].base_color, glm::vec3(0.8f));
+    EXPECT_EQ(reading.scene.materials[2].base_color, glm::vec3(1, 0, 0));
+    EXPECT_EQ(reading.scene.materials[2].name, "default");
+}
+
+TEST(ReadObj, TransformsTheUvsOfAMaterialThatAsksForIt) {
+    const TempFolder folder;
+    folder.write("m.mtl",
+                 "newmtl a\nmap_Kd -s 4 2 1 -o .5 -1 a.png\nnewmtl b\nmap_Kd b.png\n"
+                 "newmtl c\nmap_Kd -s 3e38 1 a.png\n");
+    const std::string text = "mtllib m.mtl\n" + kSquare + "vt 0.25 0.5\nvt 10 0\n";
+    const auto uv = [](const bake::SourceScene& scene, std::size_t corner) {
+        return scene.uvs[scene.corners[corner].uv];
+    };
+    const auto scene =
+        read(folder, text + "usemtl a\nf 1/1 2/2 3/1\nusemtl b\nf 1/1 2/2 3\n").scene;
+    EXPECT_EQ(uv(scene, 0), glm::vec2(1.5f, 0));
+    EXPECT_EQ(uv(scene, 1), glm::vec2(40.5f, -1));
+    EXPECT_EQ(scene.corners[0].uv, scene.corners[2].uv);
+    EXPECT_EQ(uv(scene, 3), glm::vec2(0.25f, 0.5f));
+    EXPECT_EQ(scene.corners[5].uv, kAbsent);
+    const auto huge = read(folder, text + "usemtl c\nf 1/1 2/2 3/1\n");
+    EXPECT_EQ(uv(huge.scene, 1), glm::vec2(0));
+    EXPECT_EQ(huge.warnings.size(), 1u);
 }
 
 struct Bad {
@@ -242,38 +387,31 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"binary", std::string("\x89PNG\n\x1a\n\0\0\0\rIHDR", 15), "scene.obj: is no OBJ"},
         Bad{"too_large", kSquare + "f 1 2 5\n",
             "scene.obj:5: vertex index 5 is out of range: the file has 4"},
-        Bad{"too_large_uv", kSquare + "vt 0 0\nf 1/1 2/2 3/1\n",
-            "scene.obj:6: texture coordinate index 2 is out of range: the file has 1"},
-        Bad{"too_large_normal", kSquare + "\nf 1//1 2//1 3//1\n",
-            "scene.obj:6: normal index 1 is out of range: the file has 0"},
         Bad{"far_too_large", kSquare + "f 1 2 4294967297\n",
-            "scene.obj:5: vertex index 4294967297 is out of range"},
+            "scene.obj:5: vertex index 4294967297 is out of range: the file has 4"},
         Bad{"enormous", kSquare + "f 1 2 184467440737095516170001\n",
-            "scene.obj:5: vertex index 184467440737095516170001 is out of range"},
+            "scene.obj:5: vertex index 184467440737095516170001 is out of range: the file has 4"},
         Bad{"too_negative", kSquare + "f 1 2 3\nf 1 2 -5\nv 1 2 3\n",
             "scene.obj:6: vertex index -5 is out of range: 4 come before it"},
         Bad{"far_too_negative", kSquare + "f 1 2 -4294967297\n",
-            "scene.obj:5: vertex index -4294967297 is out of range"},
-        Bad{"negative_uv", kSquare + "vt 0 0\nf 1/-1 2/-1 3/-2\n",
-            "scene.obj:6: texture coordinate index -2 is out of range: 1 come before it"},
+            "scene.obj:5: vertex index -4294967297 is out of range: 4 come before it"},
+        Bad{"far_too_negative_then", kSquare + "f -99999999999999999999 2 3\nv 1 2 3\n",
+            "scene.obj:5: vertex index -99999999999999999999 is out of range: 4 come before it"},
         Bad{"first_of_two", kSquare + "f 1 2 9\nf 1 2 -9\n", "scene.obj:5: vertex index 9"},
         Bad{"zero", kSquare + "f 0 1 2\n", "scene.obj:5: vertex index 0: indices count from 1"},
-        Bad{"zero_normal", kSquare + "f 1//0 1 2\n", "scene.obj:5: normal index 0"},
         Bad{"no_index", kSquare + "f 1 2 x\n", "scene.obj:5: 'x' is not an index"},
         Bad{"fraction", kSquare + "f 1 2 3.5\n", "scene.obj:5: '3.5' is not a corner"},
         Bad{"four_parts", kSquare + "f 1/1/1/1 2 3\n", "scene.obj:5: "},
         Bad{"lone_minus", kSquare + "f 1 2 -\n", "scene.obj:5: '-' is not an index"},
         Bad{"nan", kSquare + "v 1 nan 0\n", "scene.obj:5: 'nan' is not a finite number"},
-        Bad{"inf", kSquare + "vn 1 -inf 0\n", "scene.obj:5: '-inf' is not a finite number"},
-        Bad{"overflow", kSquare + "vt 1e39 0\n", "scene.obj:5: '1e39' is not a finite number"},
+        Bad{"microsoft_nan", kSquare + "v 1 2 -1.#IND\n",
+            "scene.obj:5: '-1.#IND' is not a finite number"},
+        Bad{"overflow", kSquare + "v 1e39 0 0\n", "scene.obj:5: '1e39' is not a finite number"},
         Bad{"word", kSquare + "v 1 two 3\n", "scene.obj:5: 'two' is not a number"},
         Bad{"comma", kSquare + "v 1,5 2 3\n", "scene.obj:5: '1,5' is not a number"},
         Bad{"too_few", kSquare + "v 1 2\n", "scene.obj:5: a number is missing"},
         Bad{"none", kSquare + "v\n", "scene.obj:5: a number is missing"},
-        Bad{"no_uv", kSquare + "vt\n", "scene.obj:5: a number is missing"},
         Bad{"commented_away", kSquare + "v 1 2 # 3\n", "scene.obj:5: a number is missing"},
-        Bad{"smoothing", kSquare + "s x\n", "scene.obj:5: 'x' is not a smoothing group"},
-        Bad{"negative_smoothing", kSquare + "s -1\n", "scene.obj:5: '-1' is not a smoothing group"},
         Bad{"statement_of_lines", kSquare + "# c\n\nf 1 \\\n 2 \\\n 9\nf 1 2 3\n",
             "scene.obj:7: vertex index 9"},
         Bad{"behind_continuation", kSquare + "f 1 \\\n 2 \\\n 3\nv 1 2 x\n",
