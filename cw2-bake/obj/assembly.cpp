@@ -16,6 +16,7 @@
 #include "cw2-bake/base/raw_vector.h"
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/obj/parser.h"
+#include "cw2-bake/obj/vertex_colors.h"
 
 namespace bake {
 namespace {
@@ -68,6 +69,7 @@ class Assembly {
 
  private:
     void append_arrays(const ObjChunk& chunk, std::size_t text_bytes_left);
+    void append_colors(const ObjChunk& chunk, std::size_t first_position);
     void append_materials(const ObjChunk& chunk);
     void append_notes(const ObjChunk& chunk);
     bool resolve(ObjChunk& chunk) const;
@@ -91,6 +93,7 @@ class Assembly {
     std::unordered_map<std::optional<std::string>, std::uint32_t> material_ids_;
     ObjMaterialUse material_use_{};
     std::uint32_t material_id_ = kAbsent;  // of material_use_, once a face uses it
+    VertexColors colors_;
     std::vector<ObjNote> notes_;
     bool has_invalid_ = false;
     std::array<std::optional<ObjError>, 3> bad_element_;
@@ -128,6 +131,7 @@ void Assembly::append_chunk(ObjChunk& chunk, std::size_t text_bytes_left) {
 
 void Assembly::append_arrays(const ObjChunk& chunk, std::size_t text_bytes_left) {
     SourceScene& scene = contents_.scene;
+    append_colors(chunk, scene.positions.size());
     const auto& bytes = chunk.text_bytes;
     append<glm::vec3>(scene.positions, chunk.positions, bytes[kObjPosition], text_bytes_left);
     append<glm::vec2>(scene.uvs, chunk.uvs, bytes[kObjUv], text_bytes_left);
@@ -139,6 +143,15 @@ void Assembly::append_arrays(const ObjChunk& chunk, std::size_t text_bytes_left)
     if (too_many) throw BakeError(name_ + ": has more elements than 32 bits can count");
     for (std::size_t i = 0; i < max_index_.size(); ++i) {
         max_index_[i] = std::max(max_index_[i], chunk.max_index[i]);
+    }
+}
+
+void Assembly::append_colors(const ObjChunk& chunk, std::size_t first_position) {
+    for (const ObjColor& color : chunk.colors) {
+        colors_.set(first_position + color.position, color.color);
+    }
+    for (const ObjPolypaint& paint : chunk.polypaint) {
+        colors_.paint(first_position + paint.positions, paint.color);
     }
 }
 
@@ -284,6 +297,7 @@ void Assembly::mend() {
 
 ObjContents Assembly::finish() && {
     if (!all_good()) mend();
+    contents_.colors = std::move(colors_).finish(contents_.scene.positions.size(), notes_);
     for (const ObjNote& note : notes_) {
         const std::string first = note.word.empty() ? "" : ", the first " + note.word;
         contents_.warnings.push_back(

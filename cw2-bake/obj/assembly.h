@@ -20,7 +20,9 @@ struct ObjContents {
     SourceScene scene;
     std::vector<ObjPolygon> polygons;             ///< faces of more than three corners, as fans
     std::vector<ObjSmoothingUse> smoothing_uses;  ///< in the order of their triangles
-    std::vector<std::string> material_names;      ///< in order of first use
+    /// One a position, as in SourceScene::colors, 0 where it has none; empty if none has.
+    std::vector<std::uint32_t> colors;
+    std::vector<std::string> material_names;  ///< in order of first use
     /// Of the first `usemtl` of each material; none for that of faces before any.
     std::vector<std::optional<std::size_t>> material_offsets;
     std::vector<ObjStatement> libraries;  ///< mtllib

@@ -24,6 +24,7 @@ void ObjChunk::clear() {
     libraries.clear();
     notes.clear();
     colors.clear();
+    polypaint.clear();
     bad_element = {};
     bad_index = {};
     max_index = {};

@@ -87,6 +87,16 @@ struct ObjColor {
     glm::vec3 color;         ///< as stated
 };
 
+/// The kind of note of a colour that is not in [0, 1].
+inline constexpr const char* kObjColorOutside = "vertex colours outside 0 to 1 are clamped";
+
+/// One colour of a ZBrush comment, which belongs to one of the last positions before it: the last
+/// colour of successive comments to the last position.
+struct ObjPolypaint {
+    std::uint32_t positions;  ///< of the piece, before the comment
+    std::uint32_t color;      ///< 0xMMRRGGBB, M being ZBrush's mask
+};
+
 using ObjTriangle = std::array<Corner, 3>;
 
 /// Where ObjChunk::text_bytes counts faces; attributes are counted by ObjAttribute.
@@ -105,6 +115,7 @@ struct ObjChunk {
     std::vector<glm::vec2> uvs;      ///< NaN where the line holds no finite number
     std::vector<glm::vec3> normals;  ///< of length 1, or 0; or NaN in the same way
     std::vector<ObjColor> colors;
+    std::vector<ObjPolypaint> polypaint;
     /// Indices are from 0 or relative, see kObjRelative; or kObjInvalid.
     RawVector<ObjTriangle> triangles;
     std::vector<ObjPolygon> polygons;

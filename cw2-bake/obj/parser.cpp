@@ -79,6 +79,7 @@ class ChunkParser {
     const char* uv(const char* p);
     const char* normal(const char* p);
     void color(const char* p);
+    void polypaint(const char* p);
     const char* face(const char* p);
     void other(std::string_view statement);
     void smoothing(std::string_view words);
@@ -149,6 +150,7 @@ const char* ChunkParser::statement(const char* p) {
     } else if (*p == 'f' && p[1] == 'o' && ends_word(p[2])) {
         return face(p + 2);  // an older name
     } else if (is_line_end(*p) || *p == '#') {
+        if (*p == '#') polypaint(p + 1);
         return after_line(p);
     }
     return nullptr;
@@ -255,9 +257,27 @@ void ChunkParser::color(const char* p) {
     if (count < 3) return;
     if (!is_good) return note("vertex colours that are no finite numbers are left out");
     const glm::vec3 color{values[0], values[1], values[2]};
+    const auto in_range = [](float value) { return value >= 0 && value <= 1; };
+    if (!std::all_of(values.begin(), values.begin() + 3, in_range)) note(kObjColorOutside);
     chunk_.colors.push_back({static_cast<std::uint32_t>(chunk_.positions.size()), color});
     if (count == 4 && values[3] != 1 && values[3] != kFullByte) {
         note("the alpha of vertex colours is left out");
+    }
+}
+
+/// "#MRGB" and eight hexadecimal digits for each of some positions.
+void ChunkParser::polypaint(const char* p) {
+    constexpr std::string_view kMark = "MRGB ";
+    for (const char c : kMark) {
+        if (*p++ != c) return;
+    }
+    p = skip_blanks(p);
+    const auto positions = static_cast<std::uint32_t>(chunk_.positions.size());
+    constexpr std::ptrdiff_t kDigits = 8;
+    for (const char* const end = word_end(p); end - p >= kDigits; p += kDigits) {
+        std::uint32_t color = 0;
+        if (std::from_chars(p, p + kDigits, color, 16).ptr != p + kDigits) return;
+        chunk_.polypaint.push_back({positions, color});
     }
 }
 

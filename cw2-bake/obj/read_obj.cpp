@@ -17,6 +17,7 @@
 #include "cw2-bake/obj/assembly.h"
 #include "cw2-bake/obj/read_mtl.h"
 #include "cw2-bake/obj/triangulate.h"
+#include "cw2-bake/obj/vertex_colors.h"
 
 namespace bake {
 namespace {
@@ -245,6 +246,7 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
     libraries.read(contents.libraries, contents.material_offsets, materials);
     libraries.warn_of_unknown(materials, contents.material_offsets);
     transform_uvs(materials, name, warn, scene);
+    color_corners(contents.colors, materials, scene);
     for (MtlMaterial& material : materials) {
         if (material.source.name.empty()) material.source.name = "default";
         scene.materials.push_back(std::move(material.source));

@@ -76,6 +76,8 @@ INSTANTIATE_TEST_SUITE_P(
         Twin{"mixed_within_a_face", kSquare + "vt 0 1\nf 1/1 2 3/1\n",
              kSquare + "vt 0 1\nvt 0 1\nf 1/1 2 3/2\n"},
         Twin{"vertex_colours", replaced(kPlain, "v 1 1 0", "v 1 1 0 0.5 0.25 nan"), kPlain},
+        Twin{"vertex_colours_and_alpha", replaced(kPlain, "v 1 1 0", "v 1 1 0 0.5 1 .25 1"),
+             kPlain},
         Twin{"w", replaced(kPlain, "v 1 1 0", "v 1 1 0 2.0"), kPlain},
         Twin{"uv_of_three", replaced(kPlain, "vt 1 1", "vt 1 1 0.5"), kPlain},
         Twin{"uv_of_one", replaced(kPlain, "vt 1 0", "vt 1"), kPlain},
@@ -324,6 +326,90 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ReadObj, KeepsTheSmoothingOfMissingNormals) {
     const auto scene = read(kSquare + "s 3\nf 1//1 2//1 3//1\n").scene;
     EXPECT_EQ(scene.smoothing_group, std::vector<std::uint32_t>{3});
+}
+
+/// 0xBBGGRR of the corner, which must be opaque.
+std::uint32_t color_at(const bake::SourceScene& scene, std::size_t corner) {
+    EXPECT_EQ(scene.colors.at(corner) >> 24, 0xFFu);
+    return scene.colors.at(corner) & 0xFFFFFF;
+}
+
+TEST(ReadObj, ReadsVertexColoursAsTheyAreEncoded) {
+    const std::string text =
+        "v 0 0 0 1 0 0\nv 1 0 0 0.5 0.25 0.2 1\nv 1 1 0\nv 0 1 0 0.1 \\\n 0 1 255\nf 1 2 3 4\n"
+        "f 3 2 1\n";
+    for (const std::size_t chunk : {1, 30, 1 << 18}) {
+        const TempFolder folder;
+        const auto reading = read(folder, text, chunk);
+        EXPECT_EQ(reading.warnings, std::vector<std::string>{});
+        const std::vector<std::uint32_t> by_position{0x0000FF, 0x334080, 0xE7E7E7, 0xFF001A};
+        ASSERT_EQ(reading.scene.colors.size(), 9u);
+        for (std::size_t i = 0; i < 9; ++i) {
+            EXPECT_EQ(color_at(reading.scene, i), by_position[reading.scene.corners[i].position]);
+        }
+        EXPECT_EQ(reading.scene.materials.at(0).base_color, glm::vec3(1));
+    }
+    EXPECT_TRUE(read(kSquare + "f 1 2 3\n").scene.colors.empty());
+    EXPECT_TRUE(read(kSquare + "v 1 2 3 0.5\nv 1 2 3 0.5 0.5\nf 1 2 3\n").scene.colors.empty());
+}
+
+// The grey of a corner without colour is 0.8, encoded by the curve of sRGB.
+TEST(ReadObj, AColouredMaterialsFactorIsWhatItStates) {
+    const double grey = 255 * (1.055 * std::pow(0.8, 1 / 2.4) - 0.055);
+    EXPECT_EQ(std::lround(grey), 0xE7);
+    const TempFolder folder;
+    folder.write("m.mtl", "newmtl kd\nKd 0.5 0.5 0.5\nnewmtl map\nmap_Kd a.png\nnewmtl none\n");
+    const auto scene = read(folder,
+                            "mtllib m.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nusemtl kd\nf 1 2 3\n"
+                            "usemtl map\nf 1 2 3\nusemtl none\nf 1 2 3\nusemtl gone\nf 2 3 2\n")
+                           .scene;
+    EXPECT_EQ(scene.materials[0].base_color, glm::vec3(0.5f));
+    EXPECT_EQ(scene.materials[1].base_color, glm::vec3(1));
+    EXPECT_EQ(scene.materials[2].base_color, glm::vec3(1));
+    EXPECT_EQ(scene.materials[3].base_color, glm::vec3(0.8f));
+    const std::vector<std::uint32_t> second{0xFFFFFF, 0xFFFFFF, 0xE7E7E7};
+    for (std::size_t material = 0; material < 3; ++material) {
+        EXPECT_EQ(color_at(scene, 3 * material), 0x0000FFu);
+        EXPECT_EQ(color_at(scene, 3 * material + 1), second[material]);
+    }
+    EXPECT_EQ(color_at(scene, 9), 0xFFFFFFu);
+}
+
+TEST(ReadObj, VertexColoursMayBeBytesAndAreClampedElse) {
+    const std::string face = "f 1 2 3\n";
+    auto reading = read("v 0 0 0 255 128 0\nv 1 0 0 1 0 0\nv 1 1 0 0 2 300\n" + face);
+    EXPECT_EQ(reading.warnings, std::vector<std::string>{
+                                    "scene.obj:1: vertex colours are taken as 0 to 255, for some "
+                                    "are above 1 (2 in all)"});
+    EXPECT_EQ(color_at(reading.scene, 0), 0x0080FFu);
+    EXPECT_EQ(color_at(reading.scene, 1), 0x000001u);
+    EXPECT_EQ(color_at(reading.scene, 2), 0xFF0200u);
+    reading = read("v 0 0 0 1.5 0.2 0\nv 1 0 0 1 0 0\nv 1 1 0 -1 0 1\n" + face);
+    EXPECT_EQ(reading.warnings,
+              std::vector<std::string>{
+                  "scene.obj:1: vertex colours outside 0 to 1 are clamped (2 in all)"});
+    EXPECT_EQ(color_at(reading.scene, 0), 0x0033FFu);
+    EXPECT_EQ(color_at(reading.scene, 2), 0xFF0000u);
+    reading =
+        read("v 0 0 0 nan 0 0\nv 1 0 0 1.#IND 0 0\nv 1 1 0 a b c\nv 0 0 1 0 0 0 0.5\n" + face);
+    EXPECT_EQ(reading.warnings,
+              (std::vector<std::string>{
+                  "scene.obj:1: vertex colours that are no finite numbers are left out (3 in all)",
+                  "scene.obj:4: the alpha of vertex colours is left out (1 in all)"}));
+}
+
+TEST(ReadObj, ReadsThePaintOfZBrush) {
+    const std::string text = kSquare +
+                             "#MRGB ff102030ff405060\n#MRGB ff708090\n#MRGB \n#MRGBx\n#MRGB zz\n"
+                             "v 0 0 1\n#MRGB 00FFFF00\nf 1 2 3\nf 4 5 1\n";
+    for (const std::size_t chunk : {1, 30, 1 << 18}) {
+        const TempFolder folder;
+        const auto reading = read(folder, text, chunk);
+        EXPECT_EQ(reading.warnings, std::vector<std::string>{});
+        const std::vector<std::uint32_t> expected{0xE7E7E7, 0x302010, 0x605040,
+                                                  0x908070, 0x00FFFF, 0xE7E7E7};
+        for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(color_at(reading.scene, i), expected[i]);
+    }
 }
 
 TEST(ReadObj, AnUnnamedMaterialIsOneThatIsNamedNothing) {
