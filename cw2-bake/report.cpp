@@ -249,6 +249,10 @@ std::string inspection(const Document& document, std::uint64_t file_bytes) {
     fmt::format_to(std::back_inserter(out), "  box from {} {} {} to {} {} {}, radius {}\n",
                    scene.bounds_min[0], scene.bounds_min[1], scene.bounds_min[2],
                    scene.bounds_max[0], scene.bounds_max[1], scene.bounds_max[2], scene.radius);
+    if (!std::ranges::all_of(scene.origin, [](double x) { return x == 0.0; })) {
+        fmt::format_to(std::back_inserter(out), "  all relative to the origin {} {} {}\n",
+                       scene.origin[0], scene.origin[1], scene.origin[2]);
+    }
     if (scene.flags & mesh_format::kHasCamera) {
         fmt::format_to(std::back_inserter(out), "  camera at {} {} {}, towards {} {} {}\n",
                        scene.camera_position[0], scene.camera_position[1], scene.camera_position[2],
@@ -312,15 +316,17 @@ std::string inspection_json(const Document& document, std::uint64_t file_bytes) 
     return fmt::format(
         "{{\n  \"format_version\": {},\n  \"bytes\": {},\n  \"vertex_bytes\": {},\n"
         "  \"index_bytes\": {},\n  \"texel_bytes\": {},\n  \"vertices\": {},\n"
-        "  \"triangles\": {},\n  \"bounds_min\": [{}, {}, {}],\n  \"bounds_max\": [{}, {}, {}],\n"
+        "  \"triangles\": {},\n  \"origin\": [{}, {}, {}],\n  \"bounds_min\": [{}, {}, {}],\n  "
+        "\"bounds_max\": [{}, {}, {}],\n"
         "  \"radius\": {},\n  \"position_error\": {},\n  \"frame_error_mean_degrees\": {},\n"
         "  \"frame_error_max_degrees\": {},\n  \"uv_error_texels\": {},\n  \"meshes\": {},\n"
         "  \"materials\": {},\n  \"textures\": {},\n  \"sources\": {}\n}}\n",
         mesh_format::kVersion, file_bytes, counts.vertex_bytes, counts.index_bytes,
-        counts.texel_bytes, counts.vertices, counts.triangles, scene.bounds_min[0],
-        scene.bounds_min[1], scene.bounds_min[2], scene.bounds_max[0], scene.bounds_max[1],
-        scene.bounds_max[2], scene.radius, scene.position_error, scene.frame_error_mean,
-        scene.frame_error_max, scene.uv_error, meshes, materials, textures, sources);
+        counts.texel_bytes, counts.vertices, counts.triangles, scene.origin[0], scene.origin[1],
+        scene.origin[2], scene.bounds_min[0], scene.bounds_min[1], scene.bounds_min[2],
+        scene.bounds_max[0], scene.bounds_max[1], scene.bounds_max[2], scene.radius,
+        scene.position_error, scene.frame_error_mean, scene.frame_error_max, scene.uv_error, meshes,
+        materials, textures, sources);
 }
 
 }  // namespace bake

@@ -213,14 +213,14 @@ bool Assembly::all_good() const {
 
 /// Parses the statement of a triangle again, now that the bounds of its indices are known.
 Assembly::Face Assembly::parse_face(std::size_t triangle) const {
-    ObjIndexBounds bounds{.before = {}, .total = counts_of(contents_.scene), .known = true};
+    ObjContext bounds{.before = {}, .total = counts_of(contents_.scene), .known = true};
     ObjChunk chunk;
     std::size_t begin = 0, end = 0;
     for (const std::size_t bytes : {chunk_bytes_, std::size_t{1}}) {
         for (;; begin = end) {
             end = obj_chunk_end(text_, begin, bytes);
             chunk.clear();
-            parse_obj_chunk(text_, begin, end, ObjIndexBounds{}, chunk);
+            parse_obj_chunk(text_, begin, end, ObjContext{}, chunk);
             if (triangle < chunk.triangles.size()) break;
             triangle -= chunk.triangles.size();
             bounds.before[kObjPosition] += count32(chunk.positions);
@@ -327,7 +327,8 @@ struct Piece {
     ObjChunk chunk;
 };
 
-void parse_pieces(std::string_view text, std::size_t chunk_bytes, Assembly& assembly) {
+void parse_pieces(std::string_view text, std::size_t chunk_bytes, const ObjContext& context,
+                  Assembly& assembly) {
     const std::size_t in_flight =
         2 * tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     // The last stage finishes pieces in order, so a slot is free when its turn comes again.
@@ -349,7 +350,7 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, Assembly& asse
     };
     const auto parse = [&](Piece* piece) {
         piece->chunk.clear();
-        parse_obj_chunk(text, piece->begin, piece->end, ObjIndexBounds{}, piece->chunk);
+        parse_obj_chunk(text, piece->begin, piece->end, context, piece->chunk);
         return piece;
     };
     const auto take = [&](Piece* piece) {
@@ -367,10 +368,13 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, Assembly& asse
 
 }  // namespace
 
-ObjContents parse_obj(std::string_view text, const std::string& name, std::size_t chunk_bytes) {
+ObjContents parse_obj(std::string_view text, const std::string& name, std::size_t chunk_bytes,
+                      const glm::dvec3& origin) {
     Assembly assembly(text, name, chunk_bytes);
-    parse_pieces(text, chunk_bytes, assembly);
-    return std::move(assembly).finish();
+    parse_pieces(text, chunk_bytes, {.origin = origin}, assembly);
+    ObjContents contents = std::move(assembly).finish();
+    contents.scene.origin = origin;
+    return contents;
 }
 
 }  // namespace bake

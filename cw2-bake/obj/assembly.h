@@ -31,10 +31,12 @@ struct ObjContents {
 };
 
 /// Parses `text` in pieces of about `chunk_bytes`, on as many threads as TBB is allowed; `name` is
-/// used in messages. Memory mapped for `text` is given back as the parsing goes on (it must be a
-/// read-only mapping of a file). Throws BakeError at the first malformed statement, then at the
-/// first index of a position that is out of range. A UV or a normal whose index is out of range, or
-/// whose line holds no finite numbers, is absent, with a warning.
-ObjContents parse_obj(std::string_view text, const std::string& name, std::size_t chunk_bytes);
+/// used in messages. Positions are those of the text less `origin`. Memory mapped for `text` is
+/// given back as the parsing goes on (it must be a read-only mapping of a file). Throws BakeError
+/// at the first malformed statement, then at the first index of a position that is out of range. A
+/// UV or a normal whose index is out of range, or whose line holds no finite numbers, is absent,
+/// with a warning.
+ObjContents parse_obj(std::string_view text, const std::string& name, std::size_t chunk_bytes,
+                      const glm::dvec3& origin = glm::dvec3(0.0));
 
 }  // namespace bake

@@ -25,11 +25,14 @@ using ObjCounts = std::array<std::uint32_t, 3>;  ///< by ObjAttribute
 inline constexpr std::uint32_t kMaxObjElements = 0x7FFF'FFFF;
 inline constexpr std::uint32_t kMaxObjDistance = 0x2000'0000;
 
-/// What indices may refer to: the elements in the text before this piece, and in the whole file.
-struct ObjIndexBounds {
+/// What is known of the rest of the text when a piece is parsed: what indices may refer to, the
+/// elements before the piece and in the whole file, and where the scene lies.
+struct ObjContext {
     ObjCounts before{kMaxObjDistance, kMaxObjDistance, kMaxObjDistance};
     ObjCounts total{kMaxObjElements, kMaxObjElements, kMaxObjElements};
     bool known = false;  ///< so that what is out of range can be reported
+    /// Subtracted from positions, in double; they are read faster where it is 0.
+    glm::dvec3 origin{0.0};
 };
 
 /// An index that is out of range whatever the rest of the text holds.

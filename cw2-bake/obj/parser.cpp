@@ -68,8 +68,8 @@ std::string problem(Found found, const char* p) {
 /// null if it goes on in the next line: then it is joined and parsed again.
 class ChunkParser {
  public:
-    ChunkParser(std::string_view text, const ObjIndexBounds& bounds, ObjChunk& chunk)
-        : text_(text), bounds_(bounds), chunk_(chunk), plain_(text, bounds, chunk) {}
+    ChunkParser(std::string_view text, const ObjContext& context, ObjChunk& chunk)
+        : text_(text), context_(context), chunk_(chunk), plain_(text, context, chunk) {}
 
     void parse(std::size_t begin, std::size_t end);
 
@@ -90,7 +90,8 @@ class ChunkParser {
     void bad_element(std::string what, ObjAttribute attribute);
     void bad_index(std::string what, ObjAttribute attribute, std::uint32_t& result);
     std::string out_of_range(const char* p, ObjAttribute attribute, std::uint32_t local_count);
-    Found number(const char*& p, float& value) const;
+    template <typename T>
+    Found number(const char*& p, T& value) const;
     template <typename Vector>
     Found vector(const char*& p, Vector& v) const;
     void note(std::string_view kind, std::string_view word = {});
@@ -101,7 +102,7 @@ class ChunkParser {
     }
 
     std::string_view text_;
-    const ObjIndexBounds& bounds_;
+    const ObjContext& context_;
     ObjChunk& chunk_;
     PlainLines plain_;
     const char* limit_ = nullptr;
@@ -173,7 +174,8 @@ const char* ChunkParser::rest(const char* p) {
 }
 
 /// Moves `p` behind the number, or to what stands in its place.
-Found ChunkParser::number(const char*& p, float& value) const {
+template <typename T>
+Found ChunkParser::number(const char*& p, T& value) const {
     p = skip_blanks(p);
     if (is_continuation(p)) return Found::line_continues;
     if (is_line_end(*p) || *p == '#') return Found::nothing;
@@ -183,7 +185,7 @@ Found ChunkParser::number(const char*& p, float& value) const {
     const bool is_special = *end == '#' && end[-1] == '.' && std::isalpha(end[1]);
     if (error != std::errc() || (!ends_word(*end) && !is_special)) return Found::no_number;
     if (is_special || !std::isfinite(value)) return Found::no_finite_number;
-    value += 0.0f;  // -0 becomes +0
+    value += T{0};  // -0 becomes +0
     p = end;
     return Found::number;
 }
@@ -202,7 +204,14 @@ void ChunkParser::note(std::string_view kind, std::string_view word) {
 const char* ChunkParser::position(const char* p) {
     const char* start = p;
     glm::vec3 v;
-    const Found found = vector(p, v);
+    Found found;
+    if (context_.origin == glm::dvec3(0.0)) {
+        found = vector(p, v);
+    } else {
+        glm::dvec3 far;
+        found = vector(p, far);
+        v = glm::vec3(far - context_.origin);
+    }
     if (found == Found::line_continues) return nullptr;
     if (found != Found::number) fail(problem(found, p));
     const char* const behind = p;
@@ -288,7 +297,7 @@ void ChunkParser::bad_element(std::string what, ObjAttribute attribute) {
 
 /// Without its position a corner is none; without anything else it goes.
 void ChunkParser::bad_index(std::string what, ObjAttribute attribute, std::uint32_t& result) {
-    if (bounds_.known) {
+    if (context_.known) {
         if (attribute == kObjPosition) fail(std::move(what));
         auto& first = chunk_.bad_index[attribute];
         if (!first) first = ObjError{offset_, std::move(what)};
@@ -305,10 +314,10 @@ std::string ChunkParser::out_of_range(const char* p, ObjAttribute attribute,
     const char* name = kElementNames[attribute];
     if (*p != '-') {
         return fmt::format("{} index {} is out of range: the file has {}", name, digits,
-                           bounds_.total[attribute]);
+                           context_.total[attribute]);
     }
     return fmt::format("{} index {} is out of range: {} come before it", name, digits,
-                       std::uint64_t{bounds_.before[attribute]} + local_count);
+                       std::uint64_t{context_.before[attribute]} + local_count);
 }
 
 template <ObjAttribute attribute>
@@ -324,11 +333,11 @@ const char* ChunkParser::index(const char* p, std::uint32_t local_count, std::ui
     if (p == digits) fail(word_at(start) + " is not an index");
     constexpr std::ptrdiff_t kSafeDigits = 18;
     const bool is_wild = p - digits > kSafeDigits;
-    const std::uint64_t before = std::uint64_t{bounds_.before[attribute]} + local_count;
+    const std::uint64_t before = std::uint64_t{context_.before[attribute]} + local_count;
     if (!is_wild && value == 0) {
         bad_index(fmt::format("{} index 0: indices count from 1", kElementNames[attribute]),
                   attribute, result);
-    } else if (is_wild || value > (relative ? before : bounds_.total[attribute])) {
+    } else if (is_wild || value > (relative ? before : context_.total[attribute])) {
         bad_index(out_of_range(start, attribute, local_count), attribute, result);
     } else if (relative) {
         result = kObjRelative + kObjRelativeBias + local_count - static_cast<std::uint32_t>(value);
@@ -428,8 +437,8 @@ std::size_t obj_chunk_end(std::string_view text, std::size_t begin, std::size_t 
 }
 
 void parse_obj_chunk(std::string_view text, std::size_t begin, std::size_t end,
-                     const ObjIndexBounds& bounds, ObjChunk& chunk) {
-    ChunkParser(text, bounds, chunk).parse(begin, end);
+                     const ObjContext& context, ObjChunk& chunk) {
+    ChunkParser(text, context, chunk).parse(begin, end);
 }
 
 }  // namespace bake

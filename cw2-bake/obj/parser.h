@@ -15,6 +15,6 @@ std::size_t obj_chunk_end(std::string_view text, std::size_t begin, std::size_t 
 /// Parses text[begin, end), which starts and ends between two statements, into an empty `chunk`.
 /// Never throws for what the text holds: see ObjChunk::error.
 void parse_obj_chunk(std::string_view text, std::size_t begin, std::size_t end,
-                     const ObjIndexBounds& bounds, ObjChunk& chunk);
+                     const ObjContext& context, ObjChunk& chunk);
 
 }  // namespace bake

@@ -132,10 +132,10 @@ CW2_INLINE void push_triangle(RawVector<ObjTriangle>& triangles, Four a, Four b,
 
 }  // namespace
 
-PlainLines::PlainLines(std::string_view text, const ObjIndexBounds& bounds, ObjChunk& chunk)
-    : text_(text), chunk_(chunk) {
+PlainLines::PlainLines(std::string_view text, const ObjContext& context, ObjChunk& chunk)
+    : text_(text), chunk_(chunk), reads_positions_(context.origin == glm::dvec3(0.0)) {
     const auto limit = [&](ObjAttribute attribute) {
-        return static_cast<std::int32_t>(bounds.total[attribute]);
+        return static_cast<std::int32_t>(context.total[attribute]);
     };
     limit_ = Four{limit(kObjPosition), limit(kObjNormal), limit(kObjUv), 0};
 }
@@ -214,6 +214,8 @@ CW2_INLINE const char* PlainLines::line(const char* p) {
     } else if (p[1] == 'n') {
         p = normal(after_keyword(p + 2));
         kind = kObjNormal;
+    } else if (!reads_positions_) {
+        return nullptr;
     } else {
         p = position(after_keyword(p + 1));
         kind = kObjPosition;

@@ -14,8 +14,9 @@ namespace bake {
 /// wrong, is left to others.
 class PlainLines {
  public:
-    /// Looks nowhere but into `text`. Indices above `bounds.total` are left to others.
-    PlainLines(std::string_view text, const ObjIndexBounds& bounds, ObjChunk& chunk);
+    /// Looks nowhere but into `text`. Indices above `context.total` are left to others, and
+    /// positions where there is an origin.
+    PlainLines(std::string_view text, const ObjContext& context, ObjChunk& chunk);
 
     /// Reads lines of text[begin, end), which end in line ends, into the chunk. Returns where the
     /// first line starts that it does not read; `end` if it has read all.
@@ -35,6 +36,7 @@ class PlainLines {
 
     std::string_view text_;
     ObjChunk& chunk_;
+    bool reads_positions_;
     Four limit_;     // by place in a Corner: the largest index from 1 that is read
     Four max_{};     // the largest that were
     Four absent_{};  // -1 where a corner lacked an index

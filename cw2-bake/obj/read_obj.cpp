@@ -14,6 +14,7 @@
 
 #include "common/io.h"
 #include "cw2-bake/base/text_lines.h"
+#include "cw2-bake/geometry/origin.h"
 #include "cw2-bake/obj/assembly.h"
 #include "cw2-bake/obj/read_mtl.h"
 #include "cw2-bake/obj/triangulate.h"
@@ -229,6 +230,8 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
     }
 
     ObjContents contents = parse_obj(text, name, chunk_bytes);
+    if (const auto origin = distant_origin(contents.scene.positions, contents.scene.corners))
+        contents = parse_obj(text, name, chunk_bytes, *origin);
     SourceScene& scene = contents.scene;
     for (const ObjError& warning : contents.warnings) {
         warn(fmt::format("{}:{}: {}", name, line_number(text, warning.offset), warning.what));

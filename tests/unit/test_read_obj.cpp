@@ -615,4 +615,27 @@ TEST(ReadObj, EndsInASoundSceneOrAnErrorHoweverAFileIsAltered) {
     EXPECT_GT(errors, 200);
 }
 
+TEST(ReadObj, PositionsFarAwayAreReadInDoubleRelativeToAnOrigin) {
+    const std::string text =
+        "v 500000.120001 4600000.340002 0.1\nv 500000.620003 4600000.340004 0.2\n"
+        "v 500000.120005 4600000.840006 0.3\nv 0 0 0\nf 1 2 3\n";
+    const Reading reading = read(text);
+    const glm::dvec3 origin = reading.scene.origin;
+    EXPECT_NE(origin, glm::dvec3(0.0));
+    const glm::dvec3 truth[] = {{500000.120001, 4600000.340002, 0.1},
+                                {500000.620003, 4600000.340004, 0.2},
+                                {500000.120005, 4600000.840006, 0.3}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 position = origin + glm::dvec3(reading.scene.positions[i]);
+        for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(position[axis], truth[i][axis], 1e-7);
+    }
+    // The same in pieces of a line or two.
+    EXPECT_EQ(read(TempFolder(), text, 40).scene.positions, reading.scene.positions);
+}
+
+TEST(ReadObj, PositionsNearEnoughHaveNoOrigin) {
+    EXPECT_EQ(read("v 9 0 0\nv 10 0 0\nv 9 1 0\nf 1 2 3\n").scene.origin, glm::dvec3(0.0));
+    EXPECT_EQ(read("v 7 7 7\nf 1 1 1\n").scene.origin, glm::dvec3(0.0)) << "a point";
+}
+
 }  // namespace
