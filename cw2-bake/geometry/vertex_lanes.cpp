@@ -41,7 +41,7 @@ CW2_EVERY_CPU void to_lattice(const Batch<float>& values, const AxisLattice& lat
 }
 
 CW2_EVERY_CPU double largest_square(const std::array<Batch<double>, 3>& vectors) {
-    const auto& [x, y, z] = vectors;
+    const Batch<double>&x = vectors[0], &y = vectors[1], &z = vectors[2];
     return largest([&](std::size_t i) { return x[i] * x[i] + y[i] * y[i] + z[i] * z[i]; });
 }
 

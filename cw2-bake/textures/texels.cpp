@@ -82,14 +82,14 @@ CW2_EVERY_CPU void normalise(Vectors& vectors) {
 
 /// One channel, not limited to [0, 1].
 TexelSource channel_texels(const Image& image, Channel channel) {
-    const auto [r, g, b] = color_channels(image);
+    const auto colors = color_channels(image);
     const bool luminance = channel == Channel::luminance;
     const bool alpha = channel == Channel::alpha;
     const bool opaque = alpha && !image.has_alpha;
     const std::size_t place = alpha                   ? image.channels - 1
-                              : channel == Channel::g ? g
-                              : channel == Channel::b ? b
-                                                      : r;
+                              : channel == Channel::g ? colors[1]
+                              : channel == Channel::b ? colors[2]
+                                                      : colors[0];
     return {image.width, image.height, 1, [=, &image](std::uint32_t y, std::span<float> texels) {
                 if (opaque) {
                     std::ranges::fill(texels, 1.0f);
@@ -103,6 +103,7 @@ TexelSource channel_texels(const Image& image, Channel channel) {
                         }
                         return;
                     }
+                    const auto [r, g, b] = colors;
                     for (std::size_t x = 0; x < texels.size(); ++x, row += image.channels) {
                         texels[x] = 0.2126f * to_float(row[r]) + 0.7152f * to_float(row[g]) +
                                     0.0722f * to_float(row[b]);
@@ -167,8 +168,8 @@ TexelSource scalar_texels(const Image& image, Channel channel) {
 TexelSource color_texels(const Image& image) {
     return {image.width, image.height, 3,
             [&image, &tables = srgb()](std::uint32_t y, std::span<float> texels) {
-                const auto [r, g, b] = color_channels(image);
                 with_row(image, y, [&](const auto* row) {
+                    const auto [r, g, b] = color_channels(image);
                     for (std::size_t i = 0; i < texels.size(); i += 3, row += image.channels) {
                         texels[i] = to_linear(tables, row[r]);
                         texels[i + 1] = to_linear(tables, row[g]);
@@ -216,8 +217,8 @@ TexelSource masked_color_texels(const Image& image, const TexelSource& mask, flo
 
 TexelSource normal_texels(const Image& image) {
     return {image.width, image.height, 3, [&image](std::uint32_t y, std::span<float> texels) {
-                const auto [r, g, b] = color_channels(image);
                 with_row(image, y, [&](const auto* row) {
+                    const auto [r, g, b] = color_channels(image);
                     Vectors vectors;
                     for (std::size_t begin = 0; begin < image.width; begin += Vectors::kCount) {
                         const std::size_t count = std::min(Vectors::kCount, image.width - begin);
