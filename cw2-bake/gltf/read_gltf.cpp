@@ -1,24 +1,39 @@
 #include "cw2-bake/gltf/read_gltf.h"
 
+#include "cw2-bake/geometry/origin.h"
 #include "cw2-bake/gltf/file.h"
 #include "cw2-bake/gltf/nodes.h"
 #include "cw2-bake/gltf/primitives.h"
 #include "cw2-bake/gltf/start.h"
 
 namespace bake {
-SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn) {
-    const GltfFile file = load_gltf(path);
-    for (const std::string& what : file.unread) warn(path.string() + ": " + what);
-    SourceScene scene;
-    scene.files = file.buffer_files;
-    scene.files.insert(scene.files.begin(), path);
+namespace {
 
-    const GltfNodes nodes = walk_nodes(file, warn);
+SourceScene triangles_of(const GltfFile& file, const GltfNodes& nodes, const Warn& warn) {
+    SourceScene scene;
     GltfPrimitives primitives(file, nodes, warn, scene);
     for (const int node : nodes.shown) primitives.expect_node(node);
     for (const int node : nodes.shown) primitives.add_node(node);
     primitives.warn_of_left_out();
-    if (scene.corners.empty()) throw BakeError(path.string() + ": shows no triangles");
+    if (scene.corners.empty()) throw BakeError(file.path.string() + ": shows no triangles");
+    return scene;
+}
+
+}  // namespace
+
+SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn) {
+    const GltfFile file = load_gltf(path);
+    for (const std::string& what : file.unread) warn(path.string() + ": " + what);
+    GltfNodes nodes = walk_nodes(file, warn);
+    SourceScene scene = triangles_of(file, nodes, warn);
+    if (const auto origin = distant_origin(scene.positions, scene.corners)) {
+        for (glm::dmat4& world_from_node : nodes.world_from_node)
+            world_from_node[3] -= glm::dvec4(*origin, 0.0);
+        scene = triangles_of(file, nodes, [](const std::string&) {});
+        scene.origin = *origin;
+    }
+    scene.files = file.buffer_files;
+    scene.files.insert(scene.files.begin(), path);
     take_camera_and_light(file, nodes, warn, scene);
     return scene;
 }

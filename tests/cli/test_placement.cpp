@@ -82,6 +82,17 @@ TEST_F(Placement, ASceneInAMapsCoordinatesLooksLikeItsLocalTwin) {
                                      "--light-position", "499999.125,122.5,4600001.25"}));
 }
 
+TEST_F(Placement, ANodeFarAwayLooksLikeItsLocalTwin) {
+    write("local.obj", hills(0, 0, 0, 1.0));
+    bake_well({"local.obj", "-o", "local.gltf"});
+    json gltf = json::parse(read("local.gltf"));
+    gltf["nodes"][0]["translation"] = {500'000.123, 4'600'000.457, -17.25};
+    write("far.gltf", gltf.dump());
+    bake_well({"local.gltf"});
+    bake_well({"far.gltf"});
+    expect_same(draw("local.cw2mesh", {}), draw("far.cw2mesh", {}));
+}
+
 TEST_F(Placement, ATurnToYUpTurnsTheOrigin) {
     write("far.obj", hills(500'000.0, -4'600'000.0, 100.0, 1.0));
     bake_well({"far.obj", "--up", "z"});
