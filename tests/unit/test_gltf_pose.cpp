@@ -134,7 +134,8 @@ TEST_F(GltfPose, SkinsThatDoNotFitAreErrors) {
     // Without weights it is a mesh like any other.
     gltf.root["nodes"][0]["skin"] = 0;
     primitive(gltf)["attributes"].erase("WEIGHTS_0");
-    expect_near(position(read(gltf), 0), {99, -1, 0});
+    const SourceScene scene = read(gltf);
+    expect_near(glm::vec3(scene.origin) + position(scene, 0), {99, -1, 0});
 }
 
 TEST_F(GltfPose, MorphTargetsMoveWhatTheirWeightsSay) {
@@ -323,7 +324,7 @@ TEST_F(GltfLights, ASpotBecomesAPointAndTheFirstLightIsTaken) {
         (std::vector<std::string>{
             place_ + "0: is a spot light: becomes a point light that shines all around",
             place_ + "1: is left out, for one light is used, the first (2 left out in all)"}));
-    lit_by({point});
+    lit_by(json::array({point}));
     EXPECT_TRUE(warnings_.empty());
     // What is no light is left out, too.
     scene = lit_by({{{"type", "area"}}, point});
