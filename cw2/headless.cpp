@@ -14,10 +14,11 @@
 #include "common/io.h"
 #include "common/quoted_text.h"
 #include "cw2/options/frame_of.h"
+#include "cw2/render/averager.h"
 #include "cw2/render/image_file.h"
 #include "cw2/render/legend.h"
+#include "cw2/render/picker.h"
 #include "cw2/render/pipelines.h"
-#include "cw2/render/renderer.h"
 #include "cw2/render/scene.h"
 #include "cw2/vulkan/resources.h"
 
@@ -31,57 +32,67 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// An image to render into, a buffer to read it back, and the commands that do both.
+/// What draws a picture, and a buffer to read it back.
 class OffscreenTarget {
  public:
-    OffscreenTarget(const Device& device, VkExtent2D extent, ImageKind kind)
+    OffscreenTarget(const Device& device, const Layouts& layouts, const Options& options,
+                    ImageKind kind)
         : device_(device),
-          extent_(extent),
-          image_(make_image(device, {.format = format_of(kind),
-                                     .extent = extent,
-                                     .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
-                                              VK_IMAGE_USAGE_TRANSFER_SRC_BIT})),
+          extent_{options.size.width, options.size.height},
+          kind_(kind),
+          samples_(options.samples.value_or(kSamples)),
+          bytes_{.srgb = options.encoding == Encoding::srgb, .straight_alpha = !options.background},
+          averager_(device, layouts, built_in_shaders(), 1),
           pixels_(make_buffer(device,
-                              VkDeviceSize{extent.width} * extent.height * pixel_bytes(kind),
+                              VkDeviceSize{extent_.width} * extent_.height * pixel_bytes(kind),
                               VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::readback)),
           pool_(make_command_pool(device)),
           commands_(allocate_commands(device, pool_.get())) {}
 
-    static VkFormat format_of(ImageKind kind) {
-        return kind == ImageKind::png ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R32G32B32A32_SFLOAT;
-    }
-
-    /// Renders one frame and waits for it.
-    void render(Renderer& renderer, const Scene& scene, const FrameSettings& settings) {
-        begin_commands(commands_);
-        renderer.record(commands_, 0, scene,
-                        {.image = image_.handle.get(),
-                         .view = image_.view.get(),
-                         .extent = extent_,
-                         .available_at = VK_PIPELINE_STAGE_2_COPY_BIT,
-                         .after = {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                   VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT}},
-                        settings);
-        read_back(commands_, image_.handle.get(), extent_, pixels_);
-        submit_and_wait(device_, commands_);
+    /// Renders one picture and waits for it. Calls `sampled` with the number of its frames that are
+    /// done.
+    template <typename Sampled>
+    void render(const Scene& scene, const FrameSettings& settings, Sampled sampled) {
+        gpu_milliseconds_ = 0.0;
+        for (std::uint32_t i = 0; i < samples_; ++i) {
+            begin_commands(commands_);
+            averager_.add(commands_, 0, scene, settings, extent_, i, samples_,
+                          kind_ == ImageKind::png);
+            if (i + 1 == samples_) {
+                const VkImage image = kind_ == ImageKind::png ? averager_.encode(commands_, bytes_)
+                                                              : averager_.mean(commands_);
+                read_back(commands_, image, extent_, pixels_);
+            }
+            submit_and_wait(device_, commands_);
+            gpu_milliseconds_ += averager_.renderer().gpu_milliseconds(0).value_or(0.0);
+            sampled(i + 1);
+        }
     }
 
     std::span<const std::byte> pixels() const { return pixels_.mapped; }
+    std::uint32_t samples() const { return samples_; }
+    /// Device time of the last picture's frames, 0 where the device has no timestamps.
+    double gpu_milliseconds() const { return gpu_milliseconds_; }
+    PngContents png() const { return {bytes_.srgb, bytes_.straight_alpha}; }
 
  private:
     const Device& device_;
     VkExtent2D extent_;
-    Image image_;
+    ImageKind kind_;
+    std::uint32_t samples_;
+    PictureBytes bytes_;
+    Averager averager_;
     Buffer pixels_;
     CommandPool pool_;
     VkCommandBuffer commands_;
+    double gpu_milliseconds_ = 0.0;
 };
 
 struct Timings {
     double load = 0.0;         ///< file to device, milliseconds
-    double first_frame = 0.0;  ///< pipelines, frame, read-back
+    double first_frame = 0.0;  ///< pipelines, the picture's frames, read-back
     double save = 0.0;
-    std::vector<double> frames;      ///< of --bench, wall clock
+    std::vector<double> frames;      ///< pictures of --bench, wall clock
     std::vector<double> gpu_frames;  ///< of --bench, device time
 };
 
@@ -106,7 +117,7 @@ std::string stats_of(const Device& device, const Scene& scene, const Timings& ti
 /// Saves pictures on a thread of its own, while the next one is drawn.
 class Saver {
  public:
-    explicit Saver(const PictureSize& size) : size_(size) {}
+    Saver(const PictureSize& size, const PngContents& png) : size_(size), png_(png) {}
 
     /// Throws what the saving of the picture before has thrown.
     void save(std::filesystem::path path, std::span<const std::byte> pixels,
@@ -115,7 +126,7 @@ class Saver {
         pixels_.assign(pixels.begin(), pixels.end());
         pending_ = std::async(std::launch::async, [this, settings, path = std::move(path)] {
             draw_legends(pixels_, size_.width, size_.height, settings);
-            write_image(path, size_.width, size_.height, pixels_);
+            write_image(path, size_.width, size_.height, pixels_, png_);
         });
     }
     void finish() {
@@ -124,6 +135,7 @@ class Saver {
 
  private:
     PictureSize size_;
+    PngContents png_;
     std::vector<std::byte> pixels_;
     std::future<void> pending_;  ///< destroyed first, which waits
 };
@@ -136,8 +148,9 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
+    /// Nothing before a second, so that what takes no time says nothing.
     void show(std::uint32_t done) const {
-        if (!is_shown_) return;
+        if (!is_shown_ || milliseconds() < 1000.0) return;
         constexpr std::uint32_t kCells = 30;
         const auto cells = static_cast<int>(std::uint64_t{kCells} * done / count_);
         fmt::print(stderr, "\r[{:#>{}}{:.>{}}] {}/{}, {:.1f} a second\x1b[K", "", cells, "",
@@ -164,16 +177,18 @@ std::filesystem::path file_of(const Options& options, std::uint32_t frame) {
 struct Studio {
     const Options& options;
     const Scene& scene;
-    Renderer& renderer;
     OffscreenTarget& target;
     Timings& timings;
 
     void draw_picture(const FrameSettings& settings) {
         Clock::time_point start = Clock::now();
-        target.render(renderer, scene, settings);
+        {
+            const Progress progress(target.samples());
+            target.render(scene, settings, [&](std::uint32_t frames) { progress.show(frames); });
+        }
         timings.first_frame = milliseconds_since(start);
         start = Clock::now();
-        Saver saver(options.size);
+        Saver saver(options.size, target.png());
         saver.save(*options.output, target.pixels(), settings);
         saver.finish();
         timings.save = milliseconds_since(start);
@@ -181,13 +196,13 @@ struct Studio {
 
     void draw_turn(const FrameSettings& settings) {
         const FrameRange& range = *options.frames;
-        Saver saver(options.size);
+        Saver saver(options.size, target.png());
         const Progress progress(range.size());
         for (std::uint32_t frame = range.first; frame <= range.last; ++frame) {
             const FrameSettings now = at_frame(settings, options.orbit.value_or(Orbit::camera),
                                                frame, range.count, scene.bounds());
             const Clock::time_point start = Clock::now();
-            target.render(renderer, scene, now);
+            target.render(scene, now, [](std::uint32_t) {});
             if (frame == range.first) timings.first_frame = milliseconds_since(start);
             saver.save(file_of(options, frame), target.pixels(), now);
             progress.show(frame - range.first + 1);
@@ -201,9 +216,9 @@ struct Studio {
     void measure(const FrameSettings& settings) {
         for (std::uint32_t i = 0; i < options.bench_frames; ++i) {
             const Clock::time_point start = Clock::now();
-            target.render(renderer, scene, settings);
+            target.render(scene, settings, [](std::uint32_t) {});
             timings.frames.push_back(milliseconds_since(start));
-            timings.gpu_frames.push_back(renderer.gpu_milliseconds(0).value_or(0.0));
+            timings.gpu_frames.push_back(target.gpu_milliseconds());
         }
         fmt::print("{} frames of {}x{}: median {:.2f} ms, device {:.2f} ms\n", options.bench_frames,
                    options.size.width, options.size.height, median(timings.frames),
@@ -211,8 +226,9 @@ struct Studio {
     }
 };
 
-/// What a file of this kind shows at the options' instant.
-FrameSettings settings_for(ImageKind kind, const Options& options, const Scene& scene) {
+/// What a picture shows at the options' instant, as a file of this kind, if it is for one.
+FrameSettings settings_for(std::optional<ImageKind> kind, const Options& options,
+                           const Scene& scene) {
     const float aspect =
         static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     FrameSettings settings =
@@ -238,12 +254,21 @@ void require_writable(const Options& options) {
     }
 }
 
+void print_pixel(const Device& device, const Layouts& layouts, const Scene& scene,
+                 const Options& options) {
+    Picker picker(device, layouts, built_in_shaders());
+    const glm::uvec2 pixel(options.pixel->x, options.pixel->y);
+    const std::optional<Pick> pick = picker.pick(scene, settings_for(std::nullopt, options, scene),
+                                                 {options.size.width, options.size.height}, pixel);
+    fmt::print("{}",
+               json_of(pixel, pick, pick ? scene.material_names()[pick->material] : std::string()));
+}
+
 }  // namespace
 
-void render_to_file(const Device& device, const Options& options) {
-    const ImageKind kind = image_kind(*options.output).value();
+void render_headless(const Device& device, const Options& options) {
     require_size(options, device);
-    require_writable(options);
+    if (options.output) require_writable(options);
     // Made now, so that no picture is there without the statistics that were asked for.
     std::optional<common::OutputFile> stats;
     if (options.stats) stats.emplace(*options.stats);
@@ -255,11 +280,12 @@ void render_to_file(const Device& device, const Options& options) {
         load_scene(device, layouts, options.scene, texture_settings(options, device));
     timings.load = milliseconds_since(start);
 
+    if (options.pixel) print_pixel(device, layouts, scene, options);
+    if (!options.output) return;
+    const ImageKind kind = image_kind(*options.output).value();
     const FrameSettings settings = settings_for(kind, options, scene);
-    Renderer renderer(device, layouts, built_in_shaders(), OffscreenTarget::format_of(kind),
-                      static_cast<VkSampleCountFlagBits>(options.samples.value_or(4)), 1);
-    OffscreenTarget target(device, {options.size.width, options.size.height}, kind);
-    Studio studio{options, scene, renderer, target, timings};
+    OffscreenTarget target(device, layouts, options, kind);
+    Studio studio{options, scene, target, timings};
     options.frames ? studio.draw_turn(settings) : studio.draw_picture(settings);
     if (options.bench_frames > 0) studio.measure(settings);
     if (stats) {

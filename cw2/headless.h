@@ -1,4 +1,4 @@
-// Pictures to files, with no display and no window system.
+// Pictures to files and pixels to numbers, with no display and no window system.
 #pragma once
 
 #include "cw2/options/options.h"
@@ -6,8 +6,9 @@
 
 namespace cw2 {
 
-/// Renders options.scene to options.output, or to a file for each of options.frames. Throws what
-/// its parts throw; then the file at hand is not written, and no file of statistics.
-void render_to_file(const Device& device, const Options& options);
+/// Renders options.scene to options.output, or to a file for each of options.frames, and prints what
+/// options.pixel shows. Throws what its parts throw; then the file at hand is not written, and no
+/// file of statistics.
+void render_headless(const Device& device, const Options& options);
 
 }  // namespace cw2

@@ -58,12 +58,6 @@ std::string new_file_name(std::string_view extension) {
     }
 }
 
-/// `options` with what only a running program knows.
-Options resolved(Options options, const Device& device) {
-    if (!options.samples) options.samples = device.is_cpu() ? 1 : 4;
-    return options;
-}
-
 /// What happens while the window is open.
 class Session {
  public:
@@ -72,14 +66,13 @@ class Session {
         : sources_(sources),
           instance_(instance),
           device_(device),
-          draws_always_(!device.is_cpu()),
           window_(window),
           layouts_(device),
           watch_(options.scene),
           scene_(std::make_unique<Scene>(
               load_scene(device, layouts_, options.scene, texture_settings(options, device)))),
           presenter_(device, surface, layouts_, built_in_shaders(),
-                     static_cast<VkSampleCountFlagBits>(*options.samples)),
+                     options.samples.value_or(kSamples)),
           picker_(device, layouts_, built_in_shaders()),
           state_(completed(options, scene_->start(), scene_->bounds()), scene_->bounds(),
                  aspect_of(window.extent())),
@@ -105,8 +98,7 @@ class Session {
         unshown_ |= input.exposed;
         // The panel shows what a frame takes without waiting for pipelines.
         stale_ |= panel_shown_ && presenter_.times_are_cold();
-        // A CPU has better things to do than to draw the same again.
-        const bool drawn = (stale_ || unshown_ || panel_shown_ || draws_always_) && draw();
+        const bool drawn = (stale_ || unshown_ || panel_shown_ || presenter_.refines()) && draw();
         if (drawn) {
             if (stale_ && panel_shown_) read_pick();
             stale_ = false;
@@ -115,7 +107,7 @@ class Session {
             presenter_.finish();
         }
         unsettled_ = input.anything ? kFramesToSettle : std::max(unsettled_ - 1, 0);
-        idle_ = !drawn || (panel_shown_ && !draws_always_ && !state_.light_moves() &&
+        idle_ = !drawn || (panel_shown_ && !state_.light_moves() && !presenter_.refines() &&
                            input.direction == glm::vec3(0.0f) && unsettled_ == 0);
         title_.update(state_.settings(), presenter_.times().gpu);
     }
@@ -154,7 +146,7 @@ class Session {
         input.commands.insert(input.commands.end(), wishes.begin(), wishes.end());
         if (panel.options == state_.options() && panel.light_moves == state_.light_moves()) return;
         if (panel.options.samples != state_.options().samples) {
-            presenter_.use_samples(static_cast<VkSampleCountFlagBits>(*panel.options.samples));
+            presenter_.use_samples(*panel.options.samples);
         }
         state_.set(panel.options, panel.light_moves);
         stale_ = true;
@@ -304,16 +296,19 @@ class Session {
     /// False where nothing can be shown now.
     bool draw() {
         const FrameSettings settings = state_.settings();
-        const WindowContents contents{*scene_, settings, stale_ || draws_always_,
-                                      panel_shown_ ? &*ui_ : nullptr};
+        const WindowContents contents{*scene_, settings, stale_, panel_shown_ ? &*ui_ : nullptr};
         if (wanted_ == Shot::none) return presenter_.show(contents, extent_);
+        const PictureBytes form{.srgb = state_.options().encoding == Encoding::srgb,
+                                .straight_alpha = !settings.background};
         try {
             const auto picture = wanted_ == Shot::picture
-                                     ? presenter_.show_and_read(contents, extent_)
+                                     ? presenter_.show_and_read(contents, extent_, form)
                                      : presenter_.show_and_read_window(contents, extent_);
             if (!picture) return false;
             const std::string name = new_file_name(".png");
-            write_image(name, picture->extent.width, picture->extent.height, picture->pixels);
+            write_image(name, picture->extent.width, picture->extent.height, picture->pixels,
+                        wanted_ == Shot::picture ? PngContents{form.srgb, form.straight_alpha}
+                                                 : PngContents{});
             tell(name, "saved " + name);
         } catch (const common::FileError& error) {
             report(error.what());
@@ -348,7 +343,6 @@ class Session {
     const std::filesystem::path& sources_;
     const Instance& instance_;
     const Device& device_;
-    bool draws_always_;
     Window& window_;
     Layouts layouts_;
     FileWatch watch_;
@@ -385,8 +379,7 @@ int run_window(const Options& options, const std::filesystem::path& sources) {
         const SurfaceHandle surface = window.make_surface(instance);
         const Device device(instance, options.device, surface.get());
         require_size(options, device);
-        Session session(resolved(options, device), sources, instance, device, window,
-                        surface.get());
+        Session session(options, sources, instance, device, window, surface.get());
         window.show();
         session.run();
     }

@@ -25,7 +25,7 @@ int run(const cw2::Options& options) {
     }
     // A scene that is none is told before a device or a display is missed.
     if (!options.list_devices) cw2::open_scene(options.scene);
-    if (!options.list_devices && !options.output) {
+    if (!options.list_devices && !options.output && !options.pixel) {
         return cw2::run_window(options, CW2_SOURCE_DIR);
     }
 
@@ -36,7 +36,7 @@ int run(const cw2::Options& options) {
     }
     {
         const cw2::Device device(instance, options.device);
-        cw2::render_to_file(device, options);
+        cw2::render_headless(device, options);
     }
     return instance.validation_messages() == 0 ? 0 : 1;
 }

@@ -65,8 +65,23 @@ struct DisplayConstants {
     float false_color_low;   // values from low to high have the whole range of colours,
     float false_color_high;  // see false_color.h
     uint view;               // what kViewOfDisplay shows
+    float lod_bias;          // added to textures' level of detail
 };
 CW2_CONSTANT uint kDisplayOffset = 80;
+
+// What add_frame.comp and encode_mean.comp are told; booleans are 0 or 1.
+struct AverageConstants {
+    float weight;  // of the frame in the mean
+    uint starts;   // the frame is the first one
+    uint clamps;   // the frame's colours to [0, 1]
+    uint divides_by_alpha;
+    uint encodes_srgb;
+    uint swaps_red_and_blue;
+};
+CW2_CONSTANT uint kFrameBinding = 0;
+CW2_CONSTANT uint kMeanBinding = 1;
+CW2_CONSTANT uint kBytesBinding = 2;
+CW2_CONSTANT uint kAverageGroup = 8;  // pixels a side of a group of invocations
 
 CW2_CONSTANT uint kNormalMapAbsent = 0;
 CW2_CONSTANT uint kNormalMapXyz = 1;

@@ -37,7 +37,7 @@ vec3 vertex_normal() { return side() * normalize(world_normal); }
 // the sum is normalised.
 vec3 shading_normal() {
     if (use_normal_map == 0 || draw.normal_map == kNormalMapAbsent) return vertex_normal();
-    vec3 t = texture(normal_map, uv).xyz * 2.0 - 1.0;
+    vec3 t = texture(normal_map, uv, display.lod_bias).xyz * 2.0 - 1.0;
     if (draw.normal_map == kNormalMapXy) t.z = sqrt(max(1.0 - dot(t.xy, t.xy), 0.0));
     t.xy *= draw.normal_scale;
     const vec3 bitangent = handedness * cross(world_normal, world_tangent);
@@ -46,11 +46,11 @@ vec3 shading_normal() {
 
 Surface surface_at_fragment() {
     Surface surface;
-    surface.base_color = draw.base_color * texture(base_color_map, uv).rgb;
+    surface.base_color = draw.base_color * texture(base_color_map, uv, display.lod_bias).rgb;
     surface.alpha = draw.roughness;
-    if (use_roughness_map != 0) surface.alpha *= texture(roughness_map, uv).r;
+    if (use_roughness_map != 0) surface.alpha *= texture(roughness_map, uv, display.lod_bias).r;
     surface.metalness = draw.metalness;
-    if (use_metalness_map != 0) surface.metalness *= texture(metalness_map, uv).r;
+    if (use_metalness_map != 0) surface.metalness *= texture(metalness_map, uv, display.lod_bias).r;
     surface.normal = shading_normal();
     return surface;
 }

@@ -77,9 +77,9 @@ bool repays_decoding(const Options& options) {
     // Of the whole turn, so that a part of it has the same frames.
     const bool many = !options.output || options.bench_frames > 0 ||
                       (options.frames && options.frames->count > 1);
-    return many ||
-           std::uint64_t{options.size.width} * options.size.height * options.samples.value_or(4) >=
-               kSamples;
+    return many || std::uint64_t{options.size.width} * options.size.height *
+                           options.samples.value_or(kSamples) >=
+                       kSamples;
 }
 
 }  // namespace

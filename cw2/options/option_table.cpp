@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -97,6 +98,17 @@ bool read_value(std::string_view text, FrameRange& range) {
     return read.has_value();
 }
 
+bool read_value(std::string_view text, PixelPlace& pixel) {
+    const std::size_t comma = text.find(',');
+    return comma != std::string_view::npos && read_value(text.substr(0, comma), pixel.x) &&
+           read_value(text.substr(comma + 1), pixel.y);
+}
+
+bool read_value(std::string_view text, Encoding& encoding) {
+    encoding = text == "linear" ? Encoding::linear : Encoding::srgb;
+    return text == "linear" || text == "srgb";
+}
+
 bool read_value(std::string_view text, Orbit& orbit) {
     orbit = text == "light" ? Orbit::light : Orbit::camera;
     return text == "light" || text == "camera";
@@ -140,6 +152,12 @@ std::string toml_of(const std::array<Side, 2>& sides) {
 }
 std::string toml_of(const FrameRange& range) {
     return fmt::format("\"{}..{}/{}\"", range.first, range.last, range.count);
+}
+std::string toml_of(const PixelPlace& pixel) {
+    return fmt::format("[{}, {}]", pixel.x, pixel.y);
+}
+std::string toml_of(Encoding encoding) {
+    return encoding == Encoding::linear ? "\"linear\"" : "\"srgb\"";
 }
 std::string toml_of(Orbit orbit) {
     return orbit == Orbit::light ? "\"light\"" : "\"camera\"";
@@ -194,6 +212,22 @@ Setting view_setting() {
             [](const Options& options) { return common::quoted_text(kViewNames[options.view]); }};
 }
 
+Setting background_setting() {
+    return {"background", "R,G,B|none",
+            "linear; none: transparent, alpha is the coverage [0.1,0.1,0.1]",
+            [](Options& options, const std::string& text) {
+                glm::vec3 color;
+                if (text != "none" && !read_value(text, color)) {
+                    return fmt::format("'{}' is neither R,G,B nor none", text);
+                }
+                options.background = text == "none" ? std::nullopt : std::optional(color);
+                return std::string();
+            },
+            [](const Options& options) {
+                return options.background ? toml_of(*options.background) : "\"none\"";
+            }};
+}
+
 template <typename T>
 std::function<bool(const std::optional<T>&)> between(T low, T high) {
     return [=](const std::optional<T>& value) { return *value >= low && *value <= high; };
@@ -232,7 +266,10 @@ std::vector<Setting> all_settings() {
               &O::light_position),
         value("light-color", "R,G,B", "linear [the file's, else 1,1,1]", &O::light_color),
         value("ambient", "R,G,B", "ambient light, linear [0.02,0.02,0.02]", &O::ambient),
-        value("background", "R,G,B", "linear [0.1,0.1,0.1]", &O::background),
+        background_setting(),
+        value("encoding", "srgb|linear",
+              "of a PNG's values; linear: a value of 128 / 255 is the byte 128 [srgb]",
+              &O::encoding),
         value("time", "SECONDS", "instant of the light's orbit, 1 rad/s about z [0]", &O::time),
         value("roughness", "0..1", "roughness of every material [its own]", &O::roughness,
               between(0.0f, 1.0f)),
@@ -244,8 +281,10 @@ std::vector<Setting> all_settings() {
         flag("no-normal-map", "shade with the vertex normals", &O::normal_map, false),
         flag("no-alpha-mask", "draw what alpha masks cut away", &O::alpha_mask, false),
         value<std::optional<std::uint32_t>>(
-            "samples", "1|4", "samples a pixel [4; 1 in a window on a CPU device]", &O::samples,
-            [](const std::optional<std::uint32_t>& n) { return *n == 1 || *n == 4; }),
+            "samples", "1|4|16|64|256", "frames that a picture is the average of [4]", &O::samples,
+            [](const std::optional<std::uint32_t>& n) {
+                return *n <= 256 && std::has_single_bit(*n) && std::countr_zero(*n) % 2 == 0;
+            }),
         value("anisotropy", "1..16",
               "largest anisotropy of texture filtering [16 on GPUs, 1 on CPUs]", &O::anisotropy,
               between<std::uint32_t>(1, 16)),
@@ -259,6 +298,9 @@ std::vector<Setting> all_settings() {
               "frame's number",
               &O::frames),
         value("orbit", "camera|light", "what goes around in --frames [camera]", &O::orbit),
+        value("pixel", "X,Y",
+              "print what shades that pixel as JSON, with no window [0,0 is the upper left]",
+              &O::pixel),
         value("stats", "FILE.json", "write timings and counts as JSON (with --output)", &O::stats),
         value<std::uint32_t>(
             "bench", "FRAMES", "draw N more frames and print their times (with --output)",

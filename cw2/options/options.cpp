@@ -70,6 +70,17 @@ void require_sense(const Options& options) {
     if (!options.output && (options.stats || options.bench_frames > 0 || options.frames)) {
         throw UsageError("--stats, --bench and --frames need --output");
     }
+    if (options.encoding == Encoding::linear && options.false_color) {
+        throw UsageError("--encoding linear and --false-color exclude each other");
+    }
+    if (options.pixel) {
+        if (options.frames) throw UsageError("--pixel and --frames exclude each other");
+        if (options.pixel->x >= options.size.width || options.pixel->y >= options.size.height) {
+            throw UsageError(fmt::format("--pixel: {},{} is outside a picture of {}x{}",
+                                         options.pixel->x, options.pixel->y, options.size.width,
+                                         options.size.height));
+        }
+    }
     if (options.stats) {
         for (const std::filesystem::path& other : {options.scene, *options.output}) {
             std::error_code ignored;

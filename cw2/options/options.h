@@ -22,26 +22,40 @@ struct PictureSize {
     bool operator==(const PictureSize&) const = default;
 };
 
+/// A pixel of a picture, from its upper left corner.
+struct PixelPlace {
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+    bool operator==(const PixelPlace&) const = default;
+};
+
+/// What the bytes of a PNG are of the values that it shows.
+enum class Encoding { srgb, linear };
+
+/// Samples a pixel, where nobody asks for others.
+inline constexpr std::uint32_t kSamples = 4;
+
 inline constexpr float kVerticalFov = 60.0f;  ///< degrees, where nobody asks for another
 
 struct Options {
     std::filesystem::path scene;
-    std::optional<std::filesystem::path> output;  ///< none: open a window
+    std::optional<std::filesystem::path> output;  ///< none: open a window, but for `pixel`
     PictureSize size;
     View view = interop::kViewShaded;
     std::optional<std::array<Side, 2>> split;  ///< in place of `view`
     float divider = 0.5f;                      ///< in [0, 1]
     std::optional<float> exposure;             ///< stops, in [-64, 64]; none: by the view
     std::optional<FalseColor> false_color;
-    std::optional<std::uint32_t> samples;       ///< 1 or 4; none: by the device and the output
+    std::optional<std::uint32_t> samples;       ///< 1, 4, 16, 64 or 256; none: kSamples
     std::optional<glm::dvec3> camera_position;  ///< this and the next are in the user's coordinates
     std::optional<glm::dvec3> camera_target;
     std::optional<float> vertical_fov;         ///< degrees, in (0, 180); none: kVerticalFov
     std::optional<glm::dvec3> light_position;  ///< the same
     std::optional<glm::vec3> light_color;      ///< none: 1, 1, 1
     glm::vec3 ambient{0.02f};
-    glm::vec3 background{0.1f};
-    double time = 0.0;               ///< seconds of the light's orbit
+    std::optional<glm::vec3> background{glm::vec3(0.1f)};  ///< linear; none: transparent
+    Encoding encoding = Encoding::srgb;                    ///< of PNGs
+    double time = 0.0;                                     ///< seconds of the light's orbit
     std::optional<float> roughness;  ///< of every material, in [0, 1]; none: its own
     std::optional<float> metalness;  ///< the same
     float normal_strength = 1.0f;    ///< a factor on the slopes of all normal maps, in [0, 10]
@@ -54,6 +68,7 @@ struct Options {
     bool validation = false;
     std::optional<FrameRange> frames;  ///< a turntable of pictures
     std::optional<Orbit> orbit;        ///< in `frames`; none: the camera's
+    std::optional<PixelPlace> pixel;   ///< whose numbers are printed
     std::optional<std::filesystem::path> stats;
     std::uint32_t bench_frames = 0;  ///< further frames to time
 

@@ -35,7 +35,7 @@ struct FrameSettings : Side {
     Camera camera{};
     Light light{};
     MaterialOverrides materials{};
-    glm::vec3 background{0.1f};  ///< linear
+    std::optional<glm::vec3> background{glm::vec3(0.1f)};  ///< linear; none: transparent
     /// Stops: values are multiplied by 2^exposure; none: default_exposure() of each side's view.
     std::optional<float> exposure;
     std::optional<FalseColor> false_color;  ///< in place of the exposure

@@ -72,17 +72,19 @@ std::optional<ImageKind> image_kind(const std::filesystem::path& path) {
 }
 
 void write_image(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
-                 std::span<const std::byte> pixels) {
+                 std::span<const std::byte> pixels, const PngContents& png) {
     common::OutputFile file(path);
     try {
         using common::PngPicture;
-        file.write(image_kind(path) == ImageKind::png
-                       ? common::encode_png({.width = width,
-                                             .height = height,
-                                             .channels = PngPicture::Channels::rgb_of_rgba,
-                                             .says_srgb = true,
-                                             .texels = pixels})
-                       : encode_exr(width, height, pixels));
+        file.write(
+            image_kind(path) == ImageKind::png
+                ? common::encode_png({.width = width,
+                                      .height = height,
+                                      .channels = png.alpha ? PngPicture::Channels::rgba
+                                                            : PngPicture::Channels::rgb_of_rgba,
+                                      .says_srgb = png.srgb,
+                                      .texels = pixels})
+                : encode_exr(width, height, pixels));
     } catch (const common::FileError&) {
         throw;
     } catch (const std::exception& error) {

@@ -99,6 +99,7 @@ class Canvas {
         for (int i = 0; i < 3; ++i) {
             pixels_[at + static_cast<std::size_t>(i)] = static_cast<std::byte>(color[i]);
         }
+        pixels_[at + 3] = std::byte{255};
     }
 
     std::span<std::byte> pixels_;

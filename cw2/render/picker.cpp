@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
+
+#include "common/quoted_text.h"
 
 namespace cw2 {
 
@@ -87,6 +90,40 @@ std::string describe(const Pick& pick, const std::string& material) {
         vector(pick.base_color), pick.roughness, pick.metalness, pick.n_dot_l(), pick.n_dot_v(),
         pick.n_dot_h(), pick.v_dot_h(), pick.distribution, pick.masking, vector(pick.fresnel),
         vector(pick.diffuse), vector(pick.specular), vector(pick.shaded));
+}
+
+std::string json_of(glm::uvec2 pixel, const std::optional<Pick>& pick,
+                    const std::string& material) {
+    const auto number = [](float x) {
+        return std::isfinite(x) ? fmt::format("{}", x) : std::string("null");
+    };
+    std::string json = fmt::format("{{\n  \"pixel\": [{}, {}],\n", pixel.x, pixel.y);
+    if (!pick) return json + "  \"material\": null\n}\n";
+    const auto add = [&](const char* name, const std::string& value) {
+        json += fmt::format(",\n  \"{}\": {}", name, value);
+    };
+    const auto vector = [&](const char* name, const glm::vec3& v) {
+        add(name, fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z)));
+    };
+    json += fmt::format("  \"material\": {}", common::quoted_text(material));
+    vector("position", pick->position);
+    vector("normal", pick->normal);
+    vector("to_light", pick->to_light);
+    vector("to_camera", pick->to_camera);
+    vector("base_color", pick->base_color);
+    add("roughness", number(pick->roughness));
+    add("metalness", number(pick->metalness));
+    add("n_dot_l", number(pick->n_dot_l()));
+    add("n_dot_v", number(pick->n_dot_v()));
+    add("n_dot_h", number(pick->n_dot_h()));
+    add("v_dot_h", number(pick->v_dot_h()));
+    add("distribution", number(pick->distribution));
+    add("masking", number(pick->masking));
+    vector("fresnel", pick->fresnel);
+    vector("diffuse", pick->diffuse);
+    vector("specular", pick->specular);
+    vector("shaded", pick->shaded);
+    return json + "\n}\n";
 }
 
 Picker::Picker(const Device& device, const Layouts& layouts, const ShaderCode& code)

@@ -39,6 +39,9 @@ struct Pick {
 /// All of it in one line of text.
 std::string describe(const Pick& pick, const std::string& material);
 
+/// All of it as a JSON object; `material` is its name. Of the background only the pixel is known.
+std::string json_of(glm::uvec2 pixel, const std::optional<Pick>& pick, const std::string& material);
+
 class Picker {
  public:
     /// `device` and `layouts` must outlive this. Throws VulkanError.

@@ -142,11 +142,6 @@ VkPipeline Pipelines::get(const PipelineKey& key) {
     return entry->second.get();
 }
 
-void Pipelines::use_formats(const AttachmentFormats& formats) {
-    formats_ = formats;
-    pipelines_.clear();
-}
-
 Pipeline Pipelines::build(const PipelineKey& key) const {
     const auto values = constants_of(key);
     std::array<VkSpecializationMapEntry, values.size()> entries;

@@ -74,9 +74,6 @@ class Pipelines {
     /// How many were built so far.
     std::size_t built() const { return built_; }
 
-    /// From now on for these attachments. What get() gave is destroyed.
-    void use_formats(const AttachmentFormats& formats);
-
  private:
     Pipeline build(const PipelineKey& key) const;
 

@@ -49,13 +49,17 @@ QueryPool make_timestamps(const Device& device, std::uint32_t count) {
     return {device.get(), pool};
 }
 
-interop::SceneUniforms scene_uniforms(const Scene& scene, VkExtent2D extent,
+interop::SceneUniforms scene_uniforms(const Scene& scene, const FrameTarget& target,
                                       const FrameSettings& settings) {
+    const VkExtent2D extent = target.extent;
     const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
     interop::SceneUniforms uniforms{};
     uniforms.camera = view_from_world(settings.camera);
     uniforms.projection =
         clip_from_view(settings.camera.vertical_fov, aspect, near_distance(scene.bounds()));
+    // What is at the sample moves to the centre; w is -z.
+    uniforms.projection[2][0] = 2.0f * target.sample.offset.x / static_cast<float>(extent.width);
+    uniforms.projection[2][1] = 2.0f * target.sample.offset.y / static_cast<float>(extent.height);
     uniforms.projCam = uniforms.projection * uniforms.camera;
     uniforms.cameraPosition = settings.camera.position;
     uniforms.lightPosition = settings.light.position;
@@ -82,9 +86,11 @@ interop::DrawConstants draw_constants(const Draw& draw, const MaterialOverrides&
     return constants;
 }
 
-interop::DisplayConstants display_constants(const Side& side, const FrameSettings& settings) {
+interop::DisplayConstants display_constants(const Side& side, const FrameTarget& target,
+                                            const FrameSettings& settings) {
     const float stops = settings.exposure.value_or(default_exposure(side.view));
-    interop::DisplayConstants constants{.exposure = std::exp2(stops), .view = side.view};
+    interop::DisplayConstants constants{
+        .exposure = std::exp2(stops), .view = side.view, .lod_bias = target.sample.lod_bias};
     if (settings.false_color) {
         const ValueRange range = settings.false_color->range_of(side.view);
         constants.false_color_low = range.low;
@@ -125,7 +131,7 @@ void draw_divider(VkCommandBuffer commands, std::uint32_t column, VkExtent2D ext
     const std::uint32_t left = column > 0 ? column - 1 : 0;
     const std::uint32_t right = std::min(column + 1, extent.width);
     const VkClearAttachment white{.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT,
-                                  .clearValue = {.color = {.float32 = {1.0f, 1.0f, 1.0f, 0.0f}}}};
+                                  .clearValue = {.color = {.float32 = {1.0f, 1.0f, 1.0f, 1.0f}}}};
     const VkClearRect rectangle{
         {{static_cast<std::int32_t>(left), 0}, {right - left, extent.height}}, 0, 1};
     vkCmdClearAttachments(commands, 1, &white, 1, &rectangle);
@@ -169,17 +175,6 @@ void Renderer::use_shaders(const ShaderCode& code) {
     pipelines_ = Pipelines(device_, layouts_, code, formats_);
 }
 
-void Renderer::use_samples(VkSampleCountFlagBits samples) {
-    if (samples == formats_.samples) return;
-    require_samples(device_, formats_.color, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, samples);
-    require_samples(device_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, samples);
-    formats_.samples = samples;
-    pipelines_.use_formats(formats_);
-    depth_ = {};
-    multisampled_ = {};
-    extent_ = {};
-}
-
 void Renderer::resize(VkExtent2D extent) {
     if (extent.width == extent_.width && extent.height == extent_.height) return;
     // A frame of the old size may still be in flight.
@@ -210,7 +205,7 @@ void Renderer::begin_attachments(VkCommandBuffer commands, const FrameTarget& ta
                       discarded(kColorAttachmentUse), kColorAttachmentUse);
     }
 
-    const glm::vec3& back = settings.background;
+    const glm::vec3 back = settings.background.value_or(glm::vec3(0.0f));
     VkRenderingAttachmentInfo color{
         .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
         .imageView = multisample ? multisampled_.view.get() : target.view,
@@ -253,7 +248,7 @@ void Renderer::draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, c
         const VkRect2D scissor = columns_of(area, left, right);
         if (scissor.extent.width == 0) return;
         vkCmdSetScissor(commands, 0, 1, &scissor);
-        const interop::DisplayConstants display = display_constants(side, settings);
+        const interop::DisplayConstants display = display_constants(side, target, settings);
         // The two layouts have the same push constants: what is pushed through one is there for
         // both.
         vkCmdPushConstants(commands, layouts_.pipeline(Shading::opaque), kConstantsStages,
@@ -317,7 +312,7 @@ void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene&
     resize(target.extent);
     counts_ = {};
     const std::size_t built_before = pipelines_.built();
-    const interop::SceneUniforms uniforms = scene_uniforms(scene, target.extent, settings);
+    const interop::SceneUniforms uniforms = scene_uniforms(scene, target, settings);
     std::memcpy(slots_[slot].uniforms.mapped.data(), &uniforms, sizeof uniforms);
     find_visible(scene.chunks(), scene.draws(),
                  clip_from_picture(area_of(target), target.extent) * uniforms.projCam,

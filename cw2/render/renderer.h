@@ -15,6 +15,12 @@
 
 namespace cw2 {
 
+/// What a frame with one sample a pixel samples.
+struct PixelSample {
+    glm::vec2 offset{0.0f};  ///< from the pixels' centres, pixels to the right and down
+    float lod_bias = 0.0f;   ///< added to textures' level of detail
+};
+
 /// The image that a frame ends up in. Its old contents are discarded.
 struct FrameTarget {
     VkImage image;
@@ -24,6 +30,7 @@ struct FrameTarget {
     VkPipelineStageFlags2 available_at;
     ImageUse after;                               ///< what it is used for next
     std::optional<VkRect2D> area = std::nullopt;  ///< that is drawn; none: all of it
+    PixelSample sample{};
 };
 
 /// What is left of a scene after culling.
@@ -48,10 +55,6 @@ class Renderer {
     /// From now on draws with these shaders. No frame may be in flight. Throws VulkanError, and
     /// keeps the old ones.
     void use_shaders(const ShaderCode& code);
-
-    /// From now on draws with that many samples a pixel. No frame may be in flight. Throws
-    /// VulkanError, and keeps the old number.
-    void use_samples(VkSampleCountFlagBits samples);
 
     /// What the last frame recorded was made of.
     const FrameCounts& counts() const { return counts_; }

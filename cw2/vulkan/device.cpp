@@ -62,14 +62,15 @@ VkPhysicalDeviceProperties properties_of(VkPhysicalDevice physical) {
     return properties;
 }
 
-/// A queue family for graphics that can present to `surface` if there is one.
+/// A queue family for graphics and compute that can present to `surface` if there is one.
 std::optional<std::uint32_t> queue_family_of(VkPhysicalDevice physical, VkSurfaceKHR surface) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
     for (std::uint32_t i = 0; i < count; ++i) {
-        if (!(families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT)) continue;
+        constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+        if ((families[i].queueFlags & kNeeded) != kNeeded) continue;
         VkBool32 presents = VK_TRUE;
         if (surface != VK_NULL_HANDLE) {
             check(vkGetPhysicalDeviceSurfaceSupportKHR(physical, i, surface, &presents),

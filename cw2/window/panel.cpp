@@ -95,6 +95,15 @@ void split_rows(Options& options) {
     side_row("right", options.split->back());
 }
 
+void background_row(std::optional<glm::vec3>& background) {
+    if (background) color("background", "##background", *background);
+    label(background ? "" : "background");
+    bool none = !background;
+    if (ImGui::Checkbox("transparent in files", &none)) {
+        background = none ? std::nullopt : Options{}.background;
+    }
+}
+
 void view_section(Options& options) {
     if (!section("View")) return;
     if (!options.split) {
@@ -104,14 +113,14 @@ void view_section(Options& options) {
     }
     split_rows(options);
     label("samples");
-    for (const std::uint32_t samples : {1u, 4u}) {
-        if (ImGui::RadioButton(samples == 1 ? "1 a pixel" : "4", options.samples == samples)) {
+    for (const std::uint32_t samples : {1u, 4u, 16u, 64u, 256u}) {
+        if (ImGui::RadioButton(fmt::format("{}", samples).c_str(), options.samples == samples)) {
             options.samples = samples;
         }
         ImGui::SameLine();
     }
     ImGui::NewLine();
-    color("background", "##background", options.background);
+    background_row(options.background);
 }
 
 /// The colours of a range, and what they mean.

@@ -40,15 +40,19 @@ std::optional<double> smoothed(std::optional<double> mean, std::optional<double>
 }  // namespace
 
 Presenter::Presenter(const Device& device, VkSurfaceKHR surface, const Layouts& layouts,
-                     const ShaderCode& code, VkSampleCountFlagBits samples)
+                     const ShaderCode& code, std::uint32_t samples)
     : device_(device),
       swapchain_(device, surface),
       pool_(make_command_pool(device)),
-      renderer_(device, layouts, code, swapchain_.format(), samples, kSlots) {
+      averager_(device, layouts, code, kSlots),
+      samples_(samples) {
+    if (!device.is_cpu()) {
+        quick_.emplace(device, layouts, code, swapchain_.format(), VK_SAMPLE_COUNT_4_BIT, kSlots);
+    }
     for (Slot& slot : slots_) {
         slot.commands = allocate_commands(device, pool_.get());
         slot.available = make_semaphore(device);
-        slot.drawn = make_fence(device);
+        slot.done = make_fence(device);
     }
 }
 
@@ -57,26 +61,48 @@ Presenter::~Presenter() {
 }
 
 bool Presenter::show(const WindowContents& contents, VkExtent2D window) {
-    return draw(contents, window, Read::nothing, nullptr);
+    return draw(contents, window, nullptr);
 }
 
-std::optional<Picture> Presenter::show_and_read(const WindowContents& contents, VkExtent2D window) {
-    return draw_and_read(contents, window, Read::picture);
+std::optional<Picture> Presenter::show_and_read(const WindowContents& contents, VkExtent2D window,
+                                                const PictureBytes& form) {
+    if (!show(contents, window)) return std::nullopt;
+    finish_mean(contents);
+    const VkExtent2D extent = picture_extent_;
+    const Buffer pixels = make_buffer(device_, VkDeviceSize{extent.width} * extent.height * 4,
+                                      VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::readback);
+    const VkCommandBuffer commands = slots_[next_slot_].commands;
+    begin_commands(commands);
+    read_back(commands, averager_.encode(commands, form), extent, pixels);
+    submit_and_wait(device_, commands);
+    Picture picture{extent, {pixels.mapped.begin(), pixels.mapped.end()}};
+    draw_legends(picture.pixels, extent.width, extent.height, contents.settings);
+    return picture;
 }
 
 std::optional<Picture> Presenter::show_and_read_window(const WindowContents& contents,
                                                        VkExtent2D window) {
-    return draw_and_read(contents, window, Read::window);
-}
-
-std::optional<Picture> Presenter::draw_and_read(const WindowContents& contents, VkExtent2D window,
-                                                Read what) {
+    if (!show(contents, window)) return std::nullopt;
+    finish_mean(contents);
+    WindowContents again = contents;
+    again.redraw = false;
     Buffer pixels;
-    if (!draw(contents, window, what, &pixels)) return std::nullopt;
+    if (!draw(again, window, &pixels)) return std::nullopt;
     finish();
     Picture picture{swapchain_.extent(), {pixels.mapped.begin(), pixels.mapped.end()}};
     if (swapchain_.format() == VK_FORMAT_B8G8R8A8_SRGB) swap_red_and_blue(picture.pixels);
     return picture;
+}
+
+void Presenter::finish_mean(const WindowContents& contents) {
+    finish();
+    const VkCommandBuffer commands = slots_[next_slot_].commands;
+    while (sampled_ < samples_) {
+        begin_commands(commands);
+        record_sample(next_slot_, contents, sampled_, samples_);
+        ++sampled_;
+        submit_and_wait(device_, commands);
+    }
 }
 
 void Presenter::fit_picture() {
@@ -92,7 +118,7 @@ void Presenter::fit_picture() {
     has_picture_ = false;
 }
 
-bool Presenter::draw(const WindowContents& contents, VkExtent2D window, Read what, Buffer* pixels) {
+bool Presenter::draw(const WindowContents& contents, VkExtent2D window, Buffer* pixels) {
     wait_for(next_slot_);
     if (!swapchain_.fit(window)) return false;
     fit_picture();
@@ -105,7 +131,10 @@ bool Presenter::draw(const WindowContents& contents, VkExtent2D window, Read wha
                               VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::readback);
     }
     const auto start = std::chrono::steady_clock::now();
-    record(next_slot_, *image, contents, what, pixels);
+    begin_commands(slot.commands);
+    record_scene(next_slot_, contents);
+    record_window(next_slot_, *image, contents.panel, pixels);
+    check(vkEndCommandBuffer(slot.commands), "vkEndCommandBuffer");
     submit(slot, *image);
     slot.cpu =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -115,28 +144,63 @@ bool Presenter::draw(const WindowContents& contents, VkExtent2D window, Read wha
     return true;
 }
 
-void Presenter::record(std::uint32_t slot, std::uint32_t image, const WindowContents& contents,
-                       Read what, const Buffer* pixels) {
-    const VkCommandBuffer commands = slots_[slot].commands;
-    begin_commands(commands);
-    slots_[slot].draws_scene = contents.redraw || !has_picture_;
-    if (slots_[slot].draws_scene) {
-        renderer_.record(commands, slot, contents.scene,
-                         {.image = picture_.handle.get(),
-                          .view = picture_.view.get(),
-                          .extent = picture_extent_,
-                          .available_at = kCopiedFrom.stages,
-                          .after = kCopiedFrom},
-                         contents.settings);
-        record_legends(slots_[slot], contents.settings);
-        slots_[slot].builds_pipelines = renderer_.counts().new_pipelines;
+void Presenter::record_scene(std::uint32_t index, const WindowContents& contents) {
+    Slot& slot = slots_[index];
+    slot.drawn = nullptr;
+    if (contents.redraw || !has_picture_) {
+        sampled_ = samples_ == 1 ? 1 : 0;
+        shows_mean_ = sampled_ == samples_;
+        if (quick_ && !shows_mean_) {
+            quick_->record(slot.commands, index, contents.scene,
+                           {.image = picture_.handle.get(),
+                            .view = picture_.view.get(),
+                            .extent = picture_extent_,
+                            .available_at = kCopiedFrom.stages,
+                            .after = kCopiedFrom},
+                           contents.settings);
+            record_legends(slot, contents.settings);
+            slot.drawn = &*quick_;
+        } else {
+            slot.drawn = &record_sample(index, contents, 0, 1);
+            record_picture(slot, contents.settings);
+        }
         has_picture_ = true;
+    } else if (!shows_mean_) {
+        if (sampled_ < samples_) {
+            slot.drawn = &record_sample(index, contents, sampled_, samples_);
+            ++sampled_;
+        }
+        if (sampled_ == samples_) {
+            record_picture(slot, contents.settings);
+            shows_mean_ = true;
+        }
     }
-    if (what == Read::picture) {
-        read_back(commands, picture_.handle.get(), picture_extent_, *pixels);
-    }
-    record_window(slot, image, contents.panel, what == Read::window ? pixels : nullptr);
-    check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+    if (slot.drawn == nullptr) return;
+    counts_ = slot.drawn->counts();
+    slot.builds_pipelines = counts_.new_pipelines;
+}
+
+const Renderer& Presenter::record_sample(std::uint32_t slot, const WindowContents& contents,
+                                         std::uint32_t index, std::uint32_t count) {
+    averager_.add(slots_[slot].commands, slot, contents.scene, contents.settings, picture_extent_,
+                  index, count, true);
+    return averager_.renderer();
+}
+
+/// Makes the mean the picture.
+void Presenter::record_picture(Slot& slot, const FrameSettings& settings) {
+    const VkImage bytes = averager_.encode(
+        slot.commands, {.blue_green_red = swapchain_.format() == VK_FORMAT_B8G8R8A8_SRGB});
+    const VkImage picture = picture_.handle.get();
+    image_barrier(slot.commands, picture, VK_IMAGE_ASPECT_COLOR_BIT,
+                  {VK_IMAGE_LAYOUT_UNDEFINED, kCopiedFrom.stages, VK_ACCESS_2_NONE}, kCopiedTo);
+    const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    const VkImageCopy copy{.srcSubresource = layers,
+                           .dstSubresource = layers,
+                           .extent = {picture_extent_.width, picture_extent_.height, 1}};
+    vkCmdCopyImage(slot.commands, bytes, kCopiedFrom.layout, picture, kCopiedTo.layout, 1, &copy);
+    image_barrier(slot.commands, picture, VK_IMAGE_ASPECT_COLOR_BIT, kCopiedTo, kCopiedFrom);
+    record_legends(slot, settings);
 }
 
 void Presenter::record_legends(Slot& slot, const FrameSettings& settings) {
@@ -216,17 +280,17 @@ void Presenter::submit(const Slot& slot, std::uint32_t image) const {
                              .pCommandBufferInfos = &commands,
                              .signalSemaphoreInfoCount = 1,
                              .pSignalSemaphoreInfos = &rendered};
-    check(vkQueueSubmit2(device_.queue(), 1, &info, slot.drawn.get()), "vkQueueSubmit2");
+    check(vkQueueSubmit2(device_.queue(), 1, &info, slot.done.get()), "vkQueueSubmit2");
 }
 
 void Presenter::wait_for(std::uint32_t index) {
     Slot& slot = slots_[index];
     if (!slot.in_flight) return;
-    const VkFence fence = slot.drawn.get();
+    const VkFence fence = slot.done.get();
     check(vkWaitForFences(device_.get(), 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
     check(vkResetFences(device_.get(), 1, &fence), "vkResetFences");
     slot.in_flight = false;
-    if (slot.draws_scene) take_times(slot, renderer_.gpu_milliseconds(index));
+    if (slot.drawn != nullptr) take_times(slot, slot.drawn->gpu_milliseconds(index));
 }
 
 void Presenter::take_times(const Slot& slot, std::optional<double> gpu) {
@@ -243,12 +307,13 @@ void Presenter::finish() {
 
 void Presenter::use_shaders(const ShaderCode& code) {
     finish();
-    renderer_.use_shaders(code);
+    averager_.use_shaders(code);
+    if (quick_) quick_->use_shaders(code);
 }
 
-void Presenter::use_samples(VkSampleCountFlagBits samples) {
-    finish();
-    renderer_.use_samples(samples);
+VkDeviceSize Presenter::memory_bytes() const {
+    return picture_.memory.bytes() + averager_.memory_bytes() +
+           (quick_ ? quick_->memory_bytes() : 0);
 }
 
 }  // namespace cw2

@@ -24,6 +24,7 @@ Options spelt_out(const Options& options, const Bounds& bounds, float aspect) {
     result.vertical_fov = options.vertical_fov.value_or(kVerticalFov);
     result.light_position = to_user(settings.light.position, bounds);
     result.light_color = settings.light.color;
+    result.samples = options.samples.value_or(kSamples);
     return result;
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "cw2/headless.h"
@@ -212,6 +213,63 @@ TEST_F(Picker, KnowsPlaceAndMaterial) {
     }
     EXPECT_GT(surfaces, 100);
     EXPECT_GT(backgrounds, 100);
+}
+
+/// What --pixel prints.
+nlohmann::json printed(const std::filesystem::path& scene, const Words& words, int x, int y) {
+    Words command{CW2_PROGRAM, scene, "--validation", "--pixel", fmt::format("{},{}", x, y)};
+    for (const std::string& word : with_size(words)) command.push_back(word);
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    return nlohmann::json::parse(outcome.out);
+}
+
+TEST_F(Picker, PixelPrintsTheNumbersOfTheViews) {
+    const std::filesystem::path scene = stage();
+    const Words camera{"--camera-position", "0.3,1.6,4.3", "--camera-target", "0,0.75,0",
+                       "--light-color",     "3,2,1",       "--time",          "0.6"};
+    const glm::ivec2 places[] = {{80, 70}, {40, 80}, {120, 60}};
+    std::vector<nlohmann::json> pixels;
+    for (const glm::ivec2& place : places) {
+        pixels.push_back(printed(scene, camera, place.x, place.y));
+        EXPECT_EQ(pixels.back()["pixel"], nlohmann::json({place.x, place.y}));
+        ASSERT_TRUE(pixels.back()["material"].is_string());
+        const auto normal = pixels.back()["normal"];
+        EXPECT_NEAR(
+            std::hypot(normal[0].get<double>(), normal[1].get<double>(), normal[2].get<double>()),
+            1.0, 1e-6);
+    }
+    for (const auto& [view, key] : {std::pair{"shaded", "shaded"},
+                                    {"base-color", "base_color"},
+                                    {"specular", "specular"},
+                                    {"fresnel", "fresnel"}}) {
+        Words options = with_size(camera);
+        options.insert(options.end(), {"--samples", "1", "--view", view});
+        const Picture picture = draw_scene(scene, ".exr", options);
+        for (std::size_t i = 0; i < pixels.size(); ++i) {
+            const float* const sample = picture.at(places[i].x, places[i].y);
+            for (std::size_t c = 0; c < 3; ++c) {
+                EXPECT_NEAR(pixels[i][key][c].get<float>(), sample[c],
+                            1e-3f * std::max(1.0f, std::abs(sample[c])))
+                    << view;
+            }
+        }
+    }
+    // Nothing but the pixel is known of the background.
+    const nlohmann::json background = printed(scene, camera, 2, 2);
+    EXPECT_EQ(background, nlohmann::json({{"pixel", {2, 2}}, {"material", nullptr}}));
+}
+
+TEST_F(Picker, PixelIsThatOfThePictureWrittenBesideIt) {
+    const std::filesystem::path scene = wall();
+    const std::filesystem::path picture = folder_ / "beside.png";
+    const Outcome outcome =
+        run({CW2_PROGRAM, scene, "--pixel", "10,45", "--size", "160x90", "--camera-position",
+             "0,0,1", "--camera-target", "0,0,0", "--output", picture});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(nlohmann::json::parse(outcome.out)["material"], "left half");
+    EXPECT_TRUE(std::filesystem::exists(picture));
 }
 
 }  // namespace

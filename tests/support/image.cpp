@@ -5,7 +5,10 @@
 #include <stdexcept>
 
 Picture read_picture(const std::filesystem::path& path) {
-    const auto input = OIIO::ImageInput::open(path.string());
+    // Colours as the file has them, whatever their alpha.
+    OIIO::ImageSpec wishes;
+    wishes["oiio:UnassociatedAlpha"] = 1;
+    const auto input = OIIO::ImageInput::open(path.string(), &wishes);
     if (!input) throw std::runtime_error(path.string() + ": " + OIIO::geterror());
     const OIIO::ImageSpec& spec = input->spec();
     Picture picture{spec.width, spec.height, spec.nchannels, {}};

@@ -49,7 +49,7 @@ class RandomOptions {
             options.false_color.emplace();
             maybe([&] { options.false_color->range = range(); });
         });
-        maybe([&] { options.samples = below(2) == 0 ? 1 : 4; });
+        maybe([&] { options.samples = 1u << 2 * below(5); });
         maybe([&] { options.camera_position = place(); });
         maybe([&] { options.camera_target = place(); });
         options.vertical_fov = std::uniform_real_distribution(1.0f, 179.0f)(random_);
@@ -57,6 +57,7 @@ class RandomOptions {
         options.light_color = vector();
         options.ambient = vector();
         options.background = vector();
+        maybe([&] { options.background.reset(); });
         options.time = number<double, std::uint64_t>();
         maybe([&] { options.roughness = std::uniform_real_distribution(0.0f, 1.0f)(random_); });
         maybe([&] { options.metalness = std::uniform_real_distribution(0.0f, 1.0f)(random_); });
@@ -74,6 +75,10 @@ class RandomOptions {
             options.bench_frames = 0;
             maybe([&] { options.orbit = below(2) == 0 ? Orbit::camera : Orbit::light; });
         });
+        if (!options.false_color && below(2) == 0) options.encoding = Encoding::linear;
+        if (!options.frames && below(2) == 0) {
+            options.pixel = {below(options.size.width), below(options.size.height)};
+        }
         options.list_devices = below(2) == 0;
         options.list_views = below(2) == 0;
         options.validation = below(2) == 0;

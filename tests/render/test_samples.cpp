@@ -1,0 +1,285 @@
+// Pictures as the mean of frames: which frames, what mean, and what transparency and encoding make
+// of it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cw2/options/frame_of.h"
+#include "cw2/render/averager.h"
+#include "tests/render/drawing.h"
+#include "tests/support/process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr std::uint32_t kWidth = 160, kHeight = 90;
+constexpr double kByte = 1.0 / 255.0 + 1e-6;  // one step of an 8-bit sample
+
+double srgb_of(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+class Samples : public testing::Test {
+ protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        ASSERT_EQ(run({MAKE_TEST_SCENES_PROGRAM, folder_->path()}).status, 0);
+        scene_ = bake_scene(*folder_ / "stage.obj");
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+
+    static Words with_size(const Words& words) {
+        Words options = words;
+        options.insert(options.end(), {"--size", fmt::format("{}x{}", kWidth, kHeight)});
+        return options;
+    }
+    static Picture draw(const std::string& extension, const Words& words) {
+        return draw_scene(scene_, extension, with_size(words));
+    }
+    static std::string bytes(const std::string& extension) {
+        std::filesystem::path path = scene_;
+        std::ifstream file(path.replace_extension(extension), std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+    static const std::filesystem::path& scene() { return scene_; }
+
+ private:
+    static std::unique_ptr<TemporaryFolder> folder_;
+    static std::filesystem::path scene_;
+};
+
+std::unique_ptr<TemporaryFolder> Samples::folder_;
+std::filesystem::path Samples::scene_;
+
+TEST(PixelSamples, LieInTheirPixelNoTwoInOneRowOrColumn) {
+    EXPECT_EQ(cw2::pixel_sample(0, 1).offset, glm::vec2(0.0f));
+    EXPECT_EQ(cw2::pixel_sample(0, 1).lod_bias, 0.0f);
+    for (const std::uint32_t count : {1u, 4u, 16u, 64u, 256u}) {
+        std::set<float> columns, rows;
+        glm::vec2 sum(0.0f);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const glm::vec2 offset = cw2::pixel_sample(i, count).offset;
+            EXPECT_LT(std::max(std::abs(offset.x), std::abs(offset.y)), 0.5f);
+            columns.insert(std::floor((offset.x + 0.5f) * static_cast<float>(count)));
+            rows.insert(std::floor((offset.y + 0.5f) * static_cast<float>(count)));
+            sum += offset;
+        }
+        EXPECT_EQ(columns.size(), count);
+        EXPECT_EQ(rows.size(), count);
+        EXPECT_NEAR(sum.x, 0.0f, 1e-4f);
+        EXPECT_NEAR(sum.y, 0.0f, 1e-4f);
+    }
+}
+
+/// Draws single frames and means of the scene on a device of its own.
+class Frames {
+ public:
+    Frames(const std::filesystem::path& path, const Words& words) {
+        std::vector<const char*> arguments{"cw2", path.c_str(), "--output", "ignored.exr"};
+        for (const std::string& word : words) arguments.push_back(word.c_str());
+        const auto options =
+            cw2::parse_options(static_cast<int>(arguments.size()), arguments.data());
+        scene_ = std::make_unique<cw2::Scene>(
+            cw2::load_scene(device_, layouts_, path, cw2::texture_settings(*options, device_)));
+        settings_ = cw2::frame_settings(*options, scene_->bounds(), float{kWidth} / kHeight);
+    }
+    ~Frames() { EXPECT_EQ(instance_.validation_messages(), 0); }
+    Frames(const Frames&) = delete;
+    Frames& operator=(const Frames&) = delete;
+
+    /// One sample a pixel, without any averaging.
+    std::vector<float> frame(const cw2::PixelSample& sample) {
+        cw2::begin_commands(commands_);
+        constexpr cw2::ImageUse kCopied{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                        VK_PIPELINE_STAGE_2_COPY_BIT,
+                                        VK_ACCESS_2_TRANSFER_READ_BIT};
+        renderer_.record(commands_, 0, *scene_,
+                         {.image = image_.handle.get(),
+                          .view = image_.view.get(),
+                          .extent = kExtent,
+                          .available_at = kCopied.stages,
+                          .after = kCopied,
+                          .sample = sample},
+                         settings_);
+        return read(image_.handle.get());
+    }
+    std::vector<float> mean(std::uint32_t count, bool clamps) {
+        for (std::uint32_t i = 0; i + 1 < count; ++i) {
+            cw2::begin_commands(commands_);
+            averager_.add(commands_, 0, *scene_, settings_, kExtent, i, count, clamps);
+            cw2::submit_and_wait(device_, commands_);
+        }
+        cw2::begin_commands(commands_);
+        averager_.add(commands_, 0, *scene_, settings_, kExtent, count - 1, count, clamps);
+        return read(averager_.mean(commands_));
+    }
+
+ private:
+    static constexpr VkExtent2D kExtent{kWidth, kHeight};
+    static constexpr VkFormat kFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+    std::vector<float> read(VkImage image) {
+        cw2::read_back(commands_, image, kExtent, pixels_);
+        cw2::submit_and_wait(device_, commands_);
+        std::vector<float> values(pixels_.mapped.size() / sizeof(float));
+        std::memcpy(values.data(), pixels_.mapped.data(), pixels_.mapped.size());
+        return values;
+    }
+
+    cw2::Instance instance_{true, {}};
+    cw2::Device device_{instance_, std::nullopt};
+    cw2::Layouts layouts_{device_};
+    std::unique_ptr<cw2::Scene> scene_;
+    cw2::FrameSettings settings_;
+    cw2::Renderer renderer_{
+        device_, layouts_, cw2::built_in_shaders(), kFormat, VK_SAMPLE_COUNT_1_BIT, 1};
+    cw2::Averager averager_{device_, layouts_, cw2::built_in_shaders(), 1};
+    cw2::Image image_{cw2::make_image(
+        device_, {.format = kFormat,
+                  .extent = kExtent,
+                  .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT})};
+    cw2::Buffer pixels_{cw2::make_buffer(device_, VkDeviceSize{kWidth} * kHeight * 16,
+                                         VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                         cw2::MemoryUse::readback)};
+    cw2::CommandPool pool_{cw2::make_command_pool(device_)};
+    VkCommandBuffer commands_{cw2::allocate_commands(device_, pool_.get())};
+};
+
+TEST_F(Samples, APictureIsTheMeanOfItsFrames) {
+    Frames frames(scene(), {"--exposure", "2"});
+    for (const std::uint32_t count : {4u, 16u}) {
+        for (const bool clamps : {false, true}) {
+            std::vector<double> truth(std::size_t{kWidth} * kHeight * 4, 0.0);
+            double largest = 0.0;
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const std::vector<float> frame = frames.frame(cw2::pixel_sample(i, count));
+                for (std::size_t k = 0; k < truth.size(); ++k) {
+                    largest = std::max(largest, double{frame[k]});
+                    truth[k] += clamps ? std::clamp(frame[k], 0.0f, 1.0f) : frame[k];
+                }
+            }
+            const std::vector<float> mean = frames.mean(count, clamps);
+            ASSERT_EQ(mean.size(), truth.size());
+            EXPECT_GT(largest, 2.0) << "nothing to clamp";
+            for (std::size_t k = 0; k < truth.size(); ++k) {
+                ASSERT_NEAR(mean[k], truth[k] / count, 1e-6 * std::max(1.0, truth[k])) << k;
+            }
+        }
+    }
+    EXPECT_TRUE(frames.mean(1, false) == frames.frame({}));
+}
+
+TEST_F(Samples, AnOffsetMovesThePicture) {
+    // A frame at twice the width has a pixel's centre where this one has it a quarter aside.
+    const Words camera{"--camera-position", "0.3,1.6,4.3", "--camera-target",
+                       "0,0.75,0",          "--view",      "view-direction"};
+    Frames frames(scene(), camera);
+    Words options = camera;
+    options.insert(options.end(),
+                   {"--size", fmt::format("{}x{}", 2 * kWidth, 2 * kHeight), "--samples", "1"});
+    const Picture larger = draw_scene(scene(), ".exr", options);
+    for (const int right : {0, 1}) {
+        for (const int down : {0, 1}) {
+            const auto frame = frames.frame({{0.5f * right - 0.25f, 0.5f * down - 0.25f}, 0.0f});
+            int compared = 0, wrong = 0;
+            for (int y = 0; y < static_cast<int>(kHeight); ++y) {
+                for (int x = 0; x < static_cast<int>(kWidth); ++x) {
+                    const float* const b = larger.at(2 * x + right, 2 * y + down);
+                    const float* const a =
+                        &frame[4 * static_cast<std::size_t>(y * int{kWidth} + x)];
+                    if (a[3] == 0.0f && b[3] == 0.0f) continue;
+                    ++compared;
+                    for (int c = 0; c < 4; ++c) {
+                        if (std::abs(a[c] - b[c]) > 1e-4f) {
+                            ++wrong;
+                            break;
+                        }
+                    }
+                }
+            }
+            EXPECT_GT(compared, 3000);
+            EXPECT_LT(wrong, compared / 100);
+        }
+    }
+}
+
+TEST_F(Samples, TheSameBytesEveryTime) {
+    for (const std::string extension : {".png", ".exr"}) {
+        draw(extension, {"--samples", "16"});
+        const std::string first = bytes(extension);
+        draw(extension, {"--samples", "16"});
+        EXPECT_TRUE(first == bytes(extension)) << extension;
+    }
+}
+
+TEST_F(Samples, NoBackgroundLeavesWhatIsInFrontOfIt) {
+    const Words view{"--view", "base-color"};
+    const auto with = [&](const std::string& background) {
+        Words words = view;
+        words.insert(words.end(), {"--background", background});
+        return words;
+    };
+    const Picture before = draw(".exr", with("0.25,0.5,2"));
+    const Picture none = draw(".exr", with("none"));
+    const Picture png = draw(".png", with("none"));
+    ASSERT_EQ(png.channels, 4);
+    constexpr double kBackground[] = {0.25, 0.5, 2.0};
+    int edges = 0;
+    for (int y = 0; y < none.height; ++y) {
+        for (int x = 0; x < none.width; ++x) {
+            const float* const value = none.at(x, y);
+            const double alpha = value[3];
+            edges += alpha > 0.0 && alpha < 1.0;
+            ASSERT_EQ(before.at(x, y)[3], value[3]);
+            ASSERT_NEAR(png.at(x, y)[3], alpha, 0.5 * kByte);
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_NEAR(value[c] + (1.0 - alpha) * kBackground[c], before.at(x, y)[c], 1e-5);
+                const double straight = alpha > 0.0 ? value[c] / alpha : 0.0;
+                ASSERT_NEAR(png.at(x, y)[c], srgb_of(std::min(straight, 1.0)), kByte);
+            }
+        }
+    }
+    EXPECT_GT(edges, 100);
+    EXPECT_EQ(draw(".png", view).channels, 3);
+}
+
+TEST_F(Samples, WhatLiesOverThePictureIsOpaque) {
+    const Picture picture = draw(".png", {"--split", "distribution,diffuse", "--false-color",
+                                          "auto", "--background", "none"});
+    EXPECT_EQ(picture.at(kWidth / 2, 2)[3], 1.0f);
+    EXPECT_EQ(picture.at(3, kHeight - 3)[3], 1.0f);
+    EXPECT_EQ(picture.at(3, 2)[3], 0.0f);
+}
+
+TEST_F(Samples, LinearPngsHoldTheValues) {
+    const Words half{"--view", "roughness", "--roughness", "0.5019608", "--encoding", "linear"};
+    const Picture values = draw(".png", half);
+    int halves = 0;
+    for (std::size_t i = 0; i < values.samples.size(); i += 3) {
+        halves += std::lround(255.0f * values.samples[i]) == 128;
+    }
+    EXPECT_GT(halves, 1000);
+    const Picture exr = draw(".exr", {"--view", "normal"});
+    const Picture png = draw(".png", {"--view", "normal", "--encoding", "linear"});
+    for (int y = 0; y < exr.height; ++y) {
+        for (int x = 0; x < exr.width; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_NEAR(png.at(x, y)[c], std::clamp(exr.at(x, y)[c], 0.0f, 1.0f), 0.51 / 255.0);
+            }
+        }
+    }
+}
+
+}  // namespace
