@@ -26,7 +26,7 @@ cw2-bake/obj/*          | fast_float/* emmintrin.h
 cw2-bake/gltf/*         | tiny_gltf.h nlohmann/json.hpp
 cw2-bake/textures/*     | png.h jpeglib.h jerror.h OpenImageIO/*
 cw2/*                   | common/* mesh-format/* shaders/interop.h shaders/false_color.h glm/* fmt/* tbb/* vulkan/*
-cw2/render/*            | *.vert.h *.frag.h glslang/* SPIRV/* Imf*.h
+cw2/render/*            | *.vert.h *.frag.h *.comp.h glslang/* SPIRV/* Imf*.h
 cw2/options/*           | CLI/* toml++/toml.h
 cw2/window/*            | GLFW/* imgui.h backends/imgui_impl_*
 shaders/*               | mesh-format/* shaders/*

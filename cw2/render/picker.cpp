@@ -94,7 +94,7 @@ std::string describe(const Pick& pick, const std::string& material) {
 
 std::string json_of(glm::uvec2 pixel, const std::optional<Pick>& pick,
                     const std::string& material) {
-    const auto number = [](float x) {
+    const auto number = [](auto x) {
         return std::isfinite(x) ? fmt::format("{}", x) : std::string("null");
     };
     std::string json = fmt::format("{{\n  \"pixel\": [{}, {}],\n", pixel.x, pixel.y);
@@ -102,7 +102,7 @@ std::string json_of(glm::uvec2 pixel, const std::optional<Pick>& pick,
     const auto add = [&](const char* name, const std::string& value) {
         json += fmt::format(",\n  \"{}\": {}", name, value);
     };
-    const auto vector = [&](const char* name, const glm::vec3& v) {
+    const auto vector = [&](const char* name, const auto& v) {
         add(name, fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z)));
     };
     json += fmt::format("  \"material\": {}", common::quoted_text(material));
