@@ -6,9 +6,9 @@
 
 namespace cw2 {
 
-/// Renders options.scene to options.output, or to a file for each of options.frames, and prints what
-/// options.pixel shows. Throws what its parts throw; then the file at hand is not written, and no
-/// file of statistics.
+/// Renders options.scene to options.output, or to a file for each of options.frames, and prints
+/// what options.pixel shows. Throws what its parts throw; then the file at hand is not written, and
+/// no file of statistics.
 void render_headless(const Device& device, const Options& options);
 
 }  // namespace cw2
