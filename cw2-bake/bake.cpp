@@ -186,6 +186,8 @@ std::string export_baked(const Settings& settings, const Warn& warn) {
     if (!is_gltf(settings.output))
         throw BakeError(settings.input.string() + ": is baked already; -o FILE.glb exports it");
     refuse_overwriting(settings, {settings.input});
+    const std::string rule =
+        settings.depfile ? depfile_text(settings.output, {settings.input}) : "";
     const common::MappedFile file(settings.input);
     const std::string name = settings.input.string();
     mesh_format::Document document = mesh_format::parse(file.bytes(), name);
@@ -194,7 +196,7 @@ std::string export_baked(const Settings& settings, const Warn& warn) {
     for (const TextureRecord& texture : document.textures)
         payloads.push_back(document.payload(texture));
     const std::uint64_t bytes = write_gltf(document, payloads, settings.output, warn);
-    if (settings.depfile) write_depfile(*settings.depfile, settings.output, {settings.input});
+    if (settings.depfile) write_depfile(*settings.depfile, rule);
     return fmt::format("{}\n{}", settings.output.string(), export_summary(document, bytes));
 }
 
@@ -211,8 +213,9 @@ std::string bake(const Settings& settings, const Warn& warn) {
 
     StageClock clock;
     SourceScene scene = read_scene(settings.input, warn);
-    const std::vector<std::filesystem::path> inputs = input_files(scene);
+    const std::vector<std::filesystem::path> inputs = input_files(scene, settings);
     refuse_overwriting(settings, inputs);
+    const std::string rule = settings.depfile ? depfile_text(settings.output, inputs) : "";
     clock.end("read");
     if (settings.z_up) turn_z_up(scene);
     generate_normals(scene);
@@ -255,7 +258,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
                                     ? write_gltf(document, tables.payloads, settings.output, warn)
                                     : write_baked(document, tables.payloads, settings.output);
     clock.end("write");
-    if (settings.depfile) write_depfile(*settings.depfile, settings.output, inputs);
+    if (settings.depfile) write_depfile(*settings.depfile, rule);
     if (settings.stats)
         write_stats(settings,
                     {bytes, measure(framed_scene, chunked.meshes), geometry.scene, clock});

@@ -1,10 +1,13 @@
 #include "cw2-bake/input_files.h"
 
+#include <glob.h>
+
 #include <algorithm>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "common/io.h"
@@ -22,33 +25,61 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
     return !error && canonical == fs::weakly_canonical(b, error) && !error;
 }
 
-/// As make reads names: blanks, backslashes before them, # and : after a backslash, $ twice.
+/// Whether make, which expands brackets, would take other files for `name`.
+bool is_pattern(const std::string& name) {
+    if (name.find('[') == name.npos) return false;
+    glob_t found{};
+    const bool any = ::glob(name.c_str(), 0, nullptr, &found) == 0;
+    const bool itself = any && found.gl_pathc == 1 && found.gl_pathv[0] == name;
+    ::globfree(&found);
+    return any && !itself;
+}
+
+[[noreturn]] void refuse(const fs::path& name) {
+    throw BakeError("--depfile: " + name.string() + ": make or ninja cannot take this name here");
+}
+
+/// As make and ninja both read names: blanks, # and : after a backslash, $ twice. Throws BakeError
+/// for a name that one of them would split, expand or run.
 std::string escaped(const fs::path& path) {
-    std::string text;
-    std::size_t backslashes = 0;
-    for (const char c : path.string()) {
-        if (c == '\n' || c == '\r')
-            throw BakeError("--depfile: a file's name has a line break: " + path.string());
-        if (c == ' ' || c == '\t') text.append(backslashes + 1, '\\');
-        if (c == '#' || c == ':') text += '\\';
+    const std::string& name = path.native();
+    const bool is_control =
+        std::ranges::any_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+    const bool is_archive = name.ends_with(')') && name.find('(') != name.npos;
+    if (is_control || is_archive || is_pattern(name) || name.empty() || name.front() == '=' ||
+        name.find_first_of("\"&';*?<>|^`") != name.npos ||
+        std::string_view(" \\:").find(name.back()) != std::string_view::npos)
+        refuse(path);
+    // Behind ./ nothing is an operator, or somebody's home.
+    std::string text = name.find_first_of("~+!-%") == 0 ? "./" : "";
+    for (const char c : name) {
+        if (std::string_view(" #:$=%").find(c) != std::string_view::npos && text.ends_with('\\'))
+            refuse(path);
+        if (c == ' ' || c == '#' || c == ':') text += '\\';
         if (c == '$') text += '$';
         text += c;
-        backslashes = c == '\\' ? backslashes + 1 : 0;
     }
     return text;
 }
 
+/// Names with these make a pattern or a variable of what stands before the colon of a rule.
+bool can_be_target(const fs::path& path) {
+    return path.native().find_first_of("%=") == path.native().npos;
+}
+
 }  // namespace
 
-std::vector<fs::path> input_files(const SourceScene& scene) {
+std::vector<fs::path> input_files(const SourceScene& scene, const Settings& settings) {
     std::vector<fs::path> files;
     std::set<fs::path> known;
     const auto add = [&](const fs::path& file) {
         if (known.insert(file).second) files.push_back(file);
     };
     const auto add_image = [&](const std::optional<TextureMap>& map) {
+        if (!map || map->embedded) return;
         std::error_code error;
-        if (map && !map->embedded && fs::exists(map->file, error)) add(map->file);
+        const bool is_lacked = settings.textures != TextureMode::none;
+        if (is_lacked || fs::exists(map->file, error)) add(map->file);
     };
     for (const fs::path& file : scene.files) add(file);
     for (const SourceMaterial& material : scene.materials) {
@@ -79,11 +110,24 @@ void refuse_overwriting(const Settings& settings, const std::vector<fs::path>& i
     if (settings.depfile) take(*settings.depfile);
 }
 
-void write_depfile(const fs::path& depfile, const fs::path& output,
-                   const std::vector<fs::path>& inputs) {
+std::string depfile_text(const fs::path& output, const std::vector<fs::path>& inputs) {
     std::string text = escaped(output) + ':';
-    for (const fs::path& input : inputs) text += " \\\n  " + escaped(input);
-    text += '\n';
+    std::string rest;
+    for (const fs::path& input : inputs) {
+        const std::string name = " \\\n  " + escaped(input);
+        text += name;
+        if (input != inputs.front() && can_be_target(input)) rest += name;
+    }
+    std::error_code error;
+    if (!can_be_target(output)) refuse(output);
+    if (inputs.front().native().find('=') != std::string::npos) refuse(inputs.front());
+    for (const fs::path& input : inputs)
+        if (!can_be_target(input) && !fs::exists(input, error)) refuse(input);
+    if (!rest.empty()) text += '\n' + rest.substr(5) + ':';
+    return text + '\n';
+}
+
+void write_depfile(const fs::path& depfile, const std::string& text) {
     common::OutputFile file(depfile);
     file.write(std::as_bytes(std::span(text)));
     file.commit();

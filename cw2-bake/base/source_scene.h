@@ -38,14 +38,15 @@ enum class Channel : std::uint8_t {
 
 /// A reference to an image, as a material states it.
 struct TextureMap {
-    /// Resolved against the file that names it; may not exist. Of an embedded image a name that no
-    /// other image of the scene has.
+    /// As file_finder.h finds it; may not exist. Of an embedded image a name that no other image of
+    /// the scene has.
     std::filesystem::path file;
     /// The contents of an image file, where the source embeds it.
     std::shared_ptr<const std::vector<std::byte>> embedded{};
     std::string stated_in;  ///< "PATH:LINE" of the statement, for messages
     Channel channel = Channel::standard;
     bool clamp = false;
+    std::string note{};  ///< what to warn of if the file is not there as named; else empty
 };
 
 /// How a height map becomes a normal map: `scale` multiplies the height (bm), which is in texels.
@@ -109,7 +110,8 @@ struct SourceScene {
     std::vector<SourceMaterial> materials;
     std::optional<SourceCamera> camera;
     std::optional<SourceLight> light;
-    std::vector<std::filesystem::path> files;  ///< that were read; images are not among them
+    /// That were read, and those that were named and are not there; images are not among them.
+    std::vector<std::filesystem::path> files;
 };
 
 }  // namespace bake

@@ -18,6 +18,11 @@ std::string_view take_word(std::string_view& text) {
     return word;
 }
 
+std::string_view without_quotes(std::string_view text) {
+    const bool quoted = text.size() > 2 && text.front() == '"' && text.back() == '"';
+    return quoted ? trimmed(text.substr(1, text.size() - 2)) : text;
+}
+
 std::string_view without_bom(std::string_view text) {
     return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }

@@ -22,6 +22,9 @@ std::string_view trimmed(std::string_view text);
 /// Takes the first word, and the blanks around it, off `text`; empty if there is none.
 std::string_view take_word(std::string_view& text);
 
+/// `text` without the double quotes around it, if there are, and the blanks inside them.
+std::string_view without_quotes(std::string_view text);
+
 /// `text` without a UTF-8 byte order mark at its start.
 std::string_view without_bom(std::string_view text);
 

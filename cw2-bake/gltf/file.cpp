@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
+#include "cw2-bake/base/file_finder.h"
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/gltf/json.h"
 #include "cw2-bake/gltf/unread.h"
@@ -126,21 +128,34 @@ std::vector<std::byte> decode_data(std::string_view uri) {
     return std::move(*bytes);
 }
 
-/// Throws what is wrong with it as BakeError.
-std::filesystem::path resolve(const std::filesystem::path& gltf, std::string_view uri) {
+/// The note is for a warning as it is. Throws what is wrong with the URI as BakeError.
+FoundFile resolve(FileFinder& finder, const std::filesystem::path& gltf, std::string_view uri) {
+    const auto decoded = decode_percent(uri);
+    std::vector<std::string> readings = readings_of(decoded ? *decoded : uri);
+    if (decoded) std::ranges::copy(readings_of(uri), std::back_inserter(readings));
     const std::size_t colon = uri.find(':');
     const bool has_scheme = colon != uri.npos && uri.find('/') > colon;
-    const auto decoded = decode_percent(uri);
-    if (has_scheme || !decoded || decoded->empty() || decoded->starts_with('/') ||
-        decoded->find('\0') != decoded->npos) {
+    const bool elsewhere = has_scheme || readings.front().starts_with('/');
+    // What has its place elsewhere may lie here all the same.
+    if (elsewhere)
+        for (std::string& name : readings) name.erase(0, name.rfind('/') + 1);
+    const bool is_name = std::ranges::none_of(readings, [](const std::string& name) {
+        return name.empty() || name.find('\0') != name.npos;
+    });
+    FoundFile found = is_name ? finder.find(gltf.parent_path(), readings) : FoundFile{};
+    if (!is_name || ((elsewhere || !decoded) && !found.exists))
         throw BakeError(fmt::format("{} is no relative path", in_quotes(uri)));
-    }
-    return gltf.parent_path() / *decoded;
+    if (found.exists && (elsewhere || uri.find('\\') != uri.npos))
+        found.note = found.file.string() + " is taken";
+    if (!found.note.empty())
+        found.note = fmt::format("{}: no such file; {}", in_quotes(uri), found.note);
+    return found;
 }
 
 class Loader {
  public:
-    Loader(GltfFile& file, json& root, Bytes binary) : file_(file), root_(root), binary_(binary) {}
+    Loader(GltfFile& file, json& root, Bytes binary, const Warn& warn)
+        : file_(file), root_(root), binary_(binary), warn_(warn) {}
 
     void load_buffers() {
         for (std::size_t i = 0; i < array("buffers").size(); ++i) {
@@ -211,9 +226,12 @@ class Loader {
         }
         const auto& text = uri->get_ref<const std::string&>();
         if (is_data(text)) return file_.decoded.emplace_back(decode_data(text));
-        const std::filesystem::path path = resolve(file_.path, text);
-        const Bytes bytes = file_.mapped.emplace_back(path).bytes();
-        file_.buffer_files.push_back(path);
+        const FoundFile found = resolve(finder_, file_.path, text);
+        if (!found.exists && !found.note.empty()) throw BakeError(found.note);
+        if (!found.note.empty())
+            warn_(fmt::format("{}: /buffers/{}: {}", file_.path.string(), index, found.note));
+        const Bytes bytes = file_.mapped.emplace_back(found.file).bytes();
+        file_.buffer_files.push_back(found.file);
         return bytes;
     }
 
@@ -236,7 +254,10 @@ class Loader {
             found.embedded = std::make_shared<std::vector<std::byte>>(
                 decode_data(uri->get_ref<const std::string&>()));
         } else {
-            found.file = resolve(file_.path, uri->get_ref<const std::string&>());
+            const FoundFile named =
+                resolve(finder_, file_.path, uri->get_ref<const std::string&>());
+            found.file = named.file;
+            found.note = named.note;
             return;
         }
         found.file = unique_name(image, index);
@@ -254,11 +275,13 @@ class Loader {
     GltfFile& file_;
     json& root_;
     Bytes binary_;
+    const Warn& warn_;
+    FileFinder finder_;
 };
 
 }  // namespace
 
-GltfFile load_gltf(const std::filesystem::path& path) {
+GltfFile load_gltf(const std::filesystem::path& path, const Warn& warn) {
     GltfFile file;
     file.path = path;
     Bytes bytes;
@@ -269,7 +292,7 @@ GltfFile load_gltf(const std::filesystem::path& path) {
     }
     const GltfChunks chunks = split_gltf(bytes, path);
     json root = parse_gltf_json(chunks.json, path);
-    Loader loader(file, root, chunks.binary);
+    Loader loader(file, root, chunks.binary, warn);
     loader.load_buffers();
     loader.find_images();
     file.unread = find_unread(root);

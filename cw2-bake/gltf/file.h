@@ -20,6 +20,7 @@ namespace bake {
 struct GltfImage {
     std::filesystem::path file;
     std::shared_ptr<const std::vector<std::byte>> embedded;
+    std::string note;     ///< as TextureMap has it
     std::string problem;  ///< why it cannot be used; empty if it can
 };
 
@@ -42,7 +43,8 @@ struct GltfFile {
 };
 
 /// Throws BakeError "PATH: /json/pointer: what is wrong" for whatever is malformed and for a buffer
-/// that is missing; what is wrong with an image is for those who use it.
-GltfFile load_gltf(const std::filesystem::path& path);
+/// that is missing; what is wrong with an image is for those who use it. Warns of a buffer that is
+/// another file than the one that is named.
+GltfFile load_gltf(const std::filesystem::path& path, const Warn& warn);
 
 }  // namespace bake

@@ -73,7 +73,8 @@ std::optional<TextureMap> GltfMaterials::texture_map(const TextureUse& use,
         }
         return std::nullopt;
     }
-    TextureMap map{.file = image.file, .embedded = image.embedded, .stated_in = place};
+    TextureMap map{
+        .file = image.file, .embedded = image.embedded, .stated_in = place, .note = image.note};
     if (texture.sampler >= 0) {
         const auto& sampler = file_.model.samplers[static_cast<std::size_t>(texture.sampler)];
         const auto clamps = [](int wrap) { return wrap == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE; };

@@ -22,7 +22,7 @@ SourceScene triangles_of(const GltfFile& file, const GltfNodes& nodes, const War
 }  // namespace
 
 SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn) {
-    const GltfFile file = load_gltf(path);
+    const GltfFile file = load_gltf(path, warn);
     for (const std::string& what : file.unread) warn(path.string() + ": " + what);
     GltfNodes nodes = walk_nodes(file, warn);
     SourceScene scene = triangles_of(file, nodes, warn);

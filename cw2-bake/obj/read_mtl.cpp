@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/io.h"
+#include "cw2-bake/base/file_finder.h"
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/obj/texture_statement.h"
 
@@ -100,6 +101,7 @@ class MtlReader {
     const std::filesystem::path& path_;
     std::string_view text_;
     const Warn& warn_;
+    FileFinder finder_;
     std::size_t line_ = 1;  // of the statement at hand
     std::size_t material_count_ = 0;
     Statements material_;
@@ -150,9 +152,10 @@ std::optional<glm::vec3> MtlReader::color(std::string_view words, std::string_vi
 }
 
 std::optional<TextureStatement> MtlReader::texture(std::string_view words) {
-    auto result = parse_texture(words, path_.parent_path(), [&](const std::string& option) {
-        note(fmt::format("the texture option {} is not supported and left out", option));
-    });
+    auto result =
+        parse_texture(words, path_.parent_path(), finder_, [&](const std::string& option) {
+            note(fmt::format("the texture option {} is not supported and left out", option));
+        });
     if (result) {
         result->map.stated_in = place();
     } else {

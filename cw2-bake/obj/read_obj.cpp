@@ -8,11 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <unordered_map>
 
+#include "common/file_kind.h"
 #include "common/io.h"
+#include "cw2-bake/base/file_finder.h"
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/geometry/origin.h"
 #include "cw2-bake/obj/assembly.h"
@@ -129,9 +132,10 @@ class Libraries {
                          const std::vector<std::optional<std::size_t>>& offsets) const;
 
  private:
-    std::vector<std::string> names(const ObjStatement& statement) const;
-    std::filesystem::path resolve(std::string_view name) const;
-    void read_library(const std::string& name, const std::string& place,
+    std::vector<std::string> names(const ObjStatement& statement);
+    void find(const ObjStatement& statement);
+    void find_beside();
+    void read_library(const std::filesystem::path& path, const std::string& place,
                       std::vector<MtlMaterial>& materials);
     std::string place(std::size_t offset) const {
         return fmt::format("{}:{}", obj_.string(), line_number(text_, offset));
@@ -141,38 +145,86 @@ class Libraries {
     std::string_view text_;
     const Warn& warn_;
     std::vector<std::filesystem::path>& files_;
+    FileFinder finder_;
+    struct Library {
+        std::string name;
+        FoundFile found;
+        std::string place;
+    };
+    std::vector<Library> libraries_;  // each name once
+    std::set<std::string> names_;
     std::unordered_map<std::string_view, std::size_t> unknown_;  // by name, index of material
     bool some_missing_ = false;
 };
 
-std::filesystem::path Libraries::resolve(std::string_view name) const {
-    std::string portable(name);
-    std::replace(portable.begin(), portable.end(), '\\', '/');
-    return obj_.parent_path() / portable;
-}
-
-/// The files a statement names: one, with blanks in its name, if that exists, or several.
-std::vector<std::string> Libraries::names(const ObjStatement& statement) const {
-    const auto exists = [&](std::string_view name) {
-        std::error_code ignored;
-        return std::filesystem::exists(resolve(name), ignored);
-    };
-    std::vector<std::string> words;
-    std::string_view rest = statement.words;
-    while (!rest.empty()) words.emplace_back(take_word(rest));
-    const bool whole = exists(statement.words) || std::none_of(words.begin(), words.end(), exists);
-    return whole ? std::vector<std::string>{statement.words} : words;
-}
-
-void Libraries::read_library(const std::string& name, const std::string& stated_in,
-                             std::vector<MtlMaterial>& materials) {
-    const std::filesystem::path path = resolve(name);
-    std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) {
-        some_missing_ = true;
-        warn_(fmt::format("{}: no material library {}", stated_in, in_quotes(name)));
-        return;
+/// The names in a statement, in quotes or apart by blanks; or, with `in_blanks`, such that blanks
+/// belong to a name up to its .mtl.
+std::vector<std::string> split_names(std::string_view rest, bool in_blanks) {
+    std::vector<std::string> names;
+    bool open = false;  // the last name has no .mtl yet
+    while (!(rest = trimmed(rest)).empty()) {
+        const std::size_t quote = rest.front() == '"' ? rest.find('"', 1) : rest.npos;
+        std::string word;
+        if (quote != rest.npos) {
+            word = rest.substr(1, quote - 1);
+            rest.remove_prefix(quote + 1);
+            open = false;
+        } else {
+            word = take_word(rest);
+        }
+        if (open) {
+            names.back() += ' ' + word;
+        } else {
+            names.push_back(word);
+        }
+        open = in_blanks && quote == rest.npos &&
+               common::lower_extension(std::filesystem::path(word)) != ".mtl";
     }
+    return names;
+}
+
+/// The files a statement names: one, with blanks in its name, or several; whichever is there.
+std::vector<std::string> Libraries::names(const ObjStatement& statement) {
+    if (statement.words.empty()) return {};
+    const std::vector<std::string> ways[] = {{std::string(without_quotes(statement.words))},
+                                             split_names(statement.words, true),
+                                             split_names(statement.words, false)};
+    const auto folder = obj_.parent_path();
+    const auto is_there = [&](const std::string& name) {
+        const FoundFile found = finder_.find(folder, readings_of(name));
+        return found.exists && found.note.empty();
+    };
+    for (const auto& way : ways)
+        if (std::ranges::any_of(way, is_there)) return way;
+    const auto is_alike = [&](const std::string& name) {
+        return finder_.find(folder, readings_of(name)).exists;
+    };
+    for (const auto& way : ways)
+        if (std::ranges::any_of(way, is_alike)) return way;
+    return ways[1];
+}
+
+void Libraries::find(const ObjStatement& statement) {
+    for (const std::string& name : names(statement)) {
+        if (!names_.insert(name).second) continue;
+        libraries_.push_back(
+            {name, finder_.find(obj_.parent_path(), readings_of(name)), place(statement.offset)});
+    }
+}
+
+/// Where no library is there, one with the name of the OBJ is as good as those it names.
+void Libraries::find_beside() {
+    const auto is_there = [](const Library& library) { return library.found.exists; };
+    if (unknown_.empty() || std::ranges::any_of(libraries_, is_there)) return;
+    FoundFile own = finder_.find(obj_.parent_path(), {{obj_.stem().string() + ".mtl"}});
+    if (!own.exists) return;
+    own.note = own.file.string() + " is taken";
+    const std::string stated_in = libraries_.empty() ? obj_.string() : libraries_.front().place;
+    libraries_.assign(1, {names_.empty() ? "" : libraries_.front().name, own, stated_in});
+}
+
+void Libraries::read_library(const std::filesystem::path& path, const std::string& stated_in,
+                             std::vector<MtlMaterial>& materials) {
     const auto wanted = [&](std::string_view material) { return unknown_.contains(material); };
     files_.push_back(path);
     try {
@@ -194,12 +246,18 @@ void Libraries::read(const std::vector<ObjStatement>& statements,
     for (std::size_t i = 0; i < materials.size(); ++i) {
         if (offsets[i]) unknown_.emplace(materials[i].source.name, i);
     }
-    std::vector<std::string> done;
-    for (const ObjStatement& statement : statements) {
-        for (const std::string& name : names(statement)) {
-            if (std::find(done.begin(), done.end(), name) != done.end()) continue;
-            done.push_back(name);
-            read_library(name, place(statement.offset), materials);
+    for (const ObjStatement& statement : statements) find(statement);
+    find_beside();
+    for (const auto& [name, found, stated_in] : libraries_) {
+        const std::string note = found.note.empty() ? "" : "; " + found.note;
+        if (!found.exists || !note.empty())
+            warn_(fmt::format("{}: no material library{}{}", stated_in,
+                              name.empty() ? " is named" : ' ' + in_quotes(name), note));
+        if (found.exists) {
+            read_library(found.file, stated_in, materials);
+        } else {
+            some_missing_ = true;
+            files_.push_back(found.file);
         }
     }
 }

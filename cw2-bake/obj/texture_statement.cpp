@@ -111,7 +111,7 @@ std::string lower_case(std::string_view text) {
 }
 
 std::optional<TextureStatement> parse_texture(
-    std::string_view words, const std::filesystem::path& folder,
+    std::string_view words, const std::filesystem::path& folder, FileFinder& finder,
     const std::function<void(const std::string& option)>& left_out) {
     TextureStatement statement;
     words = trimmed(words);
@@ -135,13 +135,15 @@ std::optional<TextureStatement> parse_texture(
             left_out(name == "-imfchan" ? fmt::format("-imfchan {}", values[0]) : name);
         }
     }
-    if (words.size() > 2 && words.front() == '"' && words.back() == '"') {
-        words = trimmed(words.substr(1, words.size() - 2));
-    }
+    words = without_quotes(words);
     if (words.empty()) return std::nullopt;
-    std::string name(words);
-    std::replace(name.begin(), name.end(), '\\', '/');
-    statement.map.file = folder / name;
+    const std::vector<std::string> readings = readings_of(words);
+    const FoundFile found = finder.find(folder, readings);
+    statement.map.file = found.file;
+    if (!found.note.empty()) {
+        statement.map.note =
+            fmt::format("{}: no such file; {}", (folder / readings[0]).string(), found.note);
+    }
     return statement;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "cw2-bake/base/file_finder.h"
 #include "cw2-bake/base/source_scene.h"
 
 namespace bake {
@@ -33,10 +34,10 @@ std::optional<float> as_number(std::string_view word);
 std::string lower_case(std::string_view text);
 
 /// Parses what stands behind the keyword: options, then the path, which is the rest of the line and
-/// relative to `folder`. None if no image is named. Tells `left_out` of each option that is not
+/// looked for from `folder`. None if no image is named. Tells `left_out` of each option that is not
 /// honoured though it would change the look; none of their numbers is a reason to fail.
 std::optional<TextureStatement> parse_texture(
-    std::string_view words, const std::filesystem::path& folder,
+    std::string_view words, const std::filesystem::path& folder, FileFinder& finder,
     const std::function<void(const std::string& option)>& left_out);
 
 }  // namespace bake

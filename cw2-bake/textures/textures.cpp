@@ -161,9 +161,19 @@ mesh_format::SourceRecord source_record(const SourceKey& key, const Placed& plac
             .reserved = 0};
 }
 
-/// One warning an image, in order of first use.
-void pass_on_warnings(const std::vector<std::optional<ImageResult>>& results, const Warn& warn) {
+/// One warning an image, in order of first use; those of how the images were found come first.
+void pass_on_warnings(const std::vector<ImageRequest>& requests,
+                      const std::vector<std::optional<ImageResult>>& results, const Warn& warn) {
+    std::set<std::string> notes;
     std::set<std::filesystem::path> named;
+    for (const ImageRequest& request : requests) {
+        for (const auto* map : {&request.map, &request.alpha_map, &request.relief}) {
+            if (!*map || (*map)->note.empty() || !notes.insert((*map)->note).second) continue;
+            warn((*map)->stated_in + ": " + (*map)->note);
+            std::error_code error;
+            if (!std::filesystem::exists((*map)->file, error)) named.insert((*map)->file);
+        }
+    }
     for (const auto& result : results) {
         for (const ImageWarning& warning : result->warnings) {
             if (named.insert(warning.file).second) {
@@ -184,7 +194,7 @@ TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode 
     std::vector<std::optional<ImageResult>> results =
         find_earlier(earlier_bake, plan.requests, keys);
     make_rest(plan.requests, mode, progress, results);
-    pass_on_warnings(results, warn);
+    pass_on_warnings(plan.requests, results, warn);
 
     TextureSet set;
     set.earlier_file = earlier_bake.file();

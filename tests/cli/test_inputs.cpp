@@ -1,6 +1,9 @@
 // What a bake reads: --depfile, and outputs that are refused because they are inputs.
 #include <algorithm>
+#include <cctype>
 
+#include "cw2-bake/base/diagnostics.h"
+#include "cw2-bake/input_files.h"
 #include "tests/cli/scene_folder.h"
 #include "tests/support/gltf_writer.h"
 
@@ -10,6 +13,15 @@ namespace fs = std::filesystem;
 
 class Inputs : public SceneFolder {
  protected:
+    /// The same of ninja, for which a generator's command need not be in its log.
+    std::string ninja_rebakes() {
+        write("build.ninja",
+              "rule bake\n  command = bake\n  depfile = deps.mk\n  generator = 1\n"
+              "build out.cw2mesh: bake\n");
+        const Outcome outcome = run({NINJA, "-n"}, {{}, folder_.path()});
+        EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+        return outcome.out.find("no work to do") == std::string::npos ? "stale" : "";
+    }
     /// What GNU make would bake anew because it is older than its inputs; empty for nothing.
     std::string stale() {
         write("Makefile", "include deps.mk\n%.cw2mesh:\n\t@echo stale\n");
@@ -37,6 +49,87 @@ TEST_F(Inputs, MakeBakesAnewWhenAnyFileThatWasReadChanges) {
     EXPECT_EQ(stale(), "");
 }
 
+TEST_F(Inputs, WhatIsMissingKeepsMakeAndNinjaBakingUntilItIsThere) {
+    const std::vector<std::string> names{"scene.mtl", "colors.png", "rough 1.png", "mask.png"};
+    const std::vector<std::string> arguments{"scene.obj", "-o",      "out.cw2mesh",
+                                             "--depfile", "deps.mk", "--quiet"};
+    // Ninja looks into its log for the command, too.
+    const auto expect_stale = [&](const std::string& what, const std::string& name) {
+        EXPECT_EQ(stale(), what) << name;
+        EXPECT_EQ(ninja_rebakes(), what) << name;
+    };
+    for (const std::string& name : names) {
+        fs::rename(here(name), here("away"));
+        ASSERT_EQ(bake(arguments).status, 0);
+        expect_stale("stale", name);
+        ASSERT_EQ(bake(arguments).status, 0);
+        expect_stale("stale", name);
+        fs::rename(here("away"), here(name));
+        fs::last_write_time(here(name), fs::file_time_type::clock::now() + std::chrono::seconds(2));
+        expect_stale("stale", name);
+        fs::last_write_time(here(name), fs::last_write_time(here("out.cw2mesh")));
+        ASSERT_EQ(bake(arguments).status, 0);
+        expect_stale("", name);
+    }
+    // Without textures no image is lacked.
+    fs::remove(here("mask.png"));
+    bake_well({"scene.obj", "-o", "out.cw2mesh", "--depfile", "deps.mk", "--textures", "none",
+               "--quiet"});
+    expect_stale("", "mask.png");
+}
+
+/// Every name that is not refused is one file to make and to ninja.
+TEST_F(Inputs, NoNameIsSplitExpandedOrRun) {
+    fs::current_path(folder_.path());
+    write("last.png", "");
+    std::string refused;  // in the middle of a name
+    const auto expect_one_file = [&](const std::string& name, char odd, bool middle) {
+        SCOPED_TRACE(name);
+        write(name, "");
+        try {
+            write("deps.mk", bake::depfile_text("out.cw2mesh", {"scene.obj", name, "last.png"}));
+        } catch (const bake::BakeError&) {
+            if (middle && odd >= ' ') refused += odd;
+            fs::remove(here(name));
+            return;
+        }
+        const auto expect_stale = [&](const std::string& what) {
+            EXPECT_EQ(stale(), what);
+            EXPECT_EQ(ninja_rebakes(), what);
+        };
+        write("out.cw2mesh", "");
+        make_newer("out.cw2mesh");
+        expect_stale("");
+        for (const std::string& input : {name, std::string("last.png")}) {
+            fs::last_write_time(here(input),
+                                fs::last_write_time(here(input)) + std::chrono::hours(2));
+            expect_stale("stale");
+            fs::last_write_time(here(input),
+                                fs::last_write_time(here(input)) - std::chrono::hours(2));
+        }
+        fs::remove(here(name));
+        if (odd != '%' && odd != '=') expect_stale("stale");
+        EXPECT_FALSE(fs::exists(here("ran")));
+    };
+    for (char odd = 1; odd < 0x7F; ++odd) {
+        if (std::isalnum(static_cast<unsigned char>(odd)) != 0 || odd == '/') continue;
+        expect_one_file(std::string("a") + odd + "b.png", odd, true);
+        if (odd < ' ' && odd != '\t' && odd != '\n') continue;
+        expect_one_file(odd + std::string("touch ran"), odd, false);
+        expect_one_file(std::string("a.png") + odd, odd, false);
+        expect_one_file(std::string("a\\") + odd + "b.png", odd, false);
+        expect_one_file(std::string("a") + odd + odd + "b.png", odd, false);
+    }
+    EXPECT_EQ(refused, "\"&'*;<>?^`|");
+    EXPECT_THROW(bake::depfile_text("a%b.cw2mesh", {"scene.obj"}), bake::BakeError);
+    EXPECT_THROW(bake::depfile_text("out.cw2mesh", {"a=b.obj"}), bake::BakeError);
+    EXPECT_THROW(bake::depfile_text("out.cw2mesh", {"scene.obj", "gone%.png"}), bake::BakeError);
+    write("tex[1].png", "");
+    bake::depfile_text("out.cw2mesh", {"scene.obj", "tex[1].png"});
+    write("tex1.png", "");
+    EXPECT_THROW(bake::depfile_text("out.cw2mesh", {"scene.obj", "tex[1].png"}), bake::BakeError);
+}
+
 TEST_F(Inputs, NamesAreEscapedForMake) {
     const std::string odd = "a #$b  c$(x).png";
     fs::rename(here("colors.png"), here(odd));
@@ -56,7 +149,8 @@ TEST_F(Inputs, TheBufferAndTheImagesOfAGltfAreInputs) {
     gltf.write_gltf(here("square.gltf"));
     bake_well({"square.gltf", "-o", "out.cw2mesh", "--quiet", "--depfile", "deps.mk"});
     EXPECT_EQ(read("deps.mk"),
-              "out.cw2mesh: \\\n  square.gltf \\\n  square.bin \\\n  rough\\ 1.png\n");
+              "out.cw2mesh: \\\n  square.gltf \\\n  square.bin \\\n  rough\\ 1.png\n"
+              "square.bin \\\n  rough\\ 1.png:\n");
     const Outcome outcome = bake({"square.gltf", "-o", "square.bin"});
     EXPECT_EQ(outcome.status, 1);
     EXPECT_EQ(outcome.err, "cw2-bake: square.bin: is an input; the output must be another file\n");
