@@ -1,5 +1,7 @@
 #include "cw2-bake/textures/material_images.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -7,6 +9,7 @@
 
 #include "cw2-bake/textures/block_compression.h"
 #include "cw2-bake/textures/mip_chain.h"
+#include "cw2-bake/textures/relief.h"
 #include "cw2-bake/textures/roughness_mips.h"
 #include "cw2-bake/textures/texels.h"
 
@@ -16,7 +19,7 @@ namespace {
 using mesh_format::TextureFormat;
 
 void warn(const TextureMap& map, const std::string& cause, ImageResult& result) {
-    result.warnings.push_back({map.file, map.stated_in + ": " + map.file.string() + ": " + cause});
+    result.warnings.push_back({map.stated_in, map.file.string() + ": " + cause});
 }
 
 /// Null, and a warning, where there is no such map or image.
@@ -68,7 +71,20 @@ struct Mask {
     Range range;
 };
 
-std::optional<Mask> find_mask(const ImageRequest& request, const Image* color, const Image* alpha) {
+/// The share of the texels that are at or above `limit`.
+double share_shown(const TexelSource& mask, float limit) {
+    std::vector<float> row(mask.width);
+    std::uint64_t shown = 0;
+    for (std::uint32_t y = 0; y < mask.height; ++y) {
+        mask.read_row(y, row);
+        shown += static_cast<std::uint64_t>(
+            std::ranges::count_if(row, [limit](float value) { return value >= limit; }));
+    }
+    return static_cast<double>(shown) / (static_cast<double>(mask.width) * mask.height);
+}
+
+std::optional<Mask> find_mask(const ImageRequest& request, const Image* color, const Image* alpha,
+                              ImageResult& result) {
     const auto mask_of = [](const Image& image, Channel channel, const TextureMap& map) {
         const TexelSource texels = scalar_texels(image, channel);
         return Mask{texels, &map, range_of(texels)};
@@ -84,15 +100,28 @@ std::optional<Mask> find_mask(const ImageRequest& request, const Image* color, c
     } else if (color && color->has_alpha && request.color_alpha_is_mask) {
         mask = mask_of(*color, Channel::alpha, *request.map);
     }
-    const bool hides = mask && mask->range.smallest < shown_from(request.alpha_cutoff);
-    return hides ? mask : std::nullopt;
+    const float limit = shown_from(request.alpha_cutoff);
+    const bool hides = mask && mask->range.smallest < limit;
+    if (!hides) return std::nullopt;
+    // Alpha of a colour that leaves nothing is gloss, or height, or a mistake.
+    constexpr double kLeastShare = 0.005;
+    if (!alpha && share_shown(mask->texels, limit) < kLeastShare) {
+        warn(*mask->map,
+             fmt::format("its alpha is below {:.3g} (nearly) everywhere; it is ignored, and hides "
+                         "nothing",
+                         request.alpha_cutoff),
+             result);
+        return std::nullopt;
+    }
+    if (mask->range.largest < limit) warn(*mask->map, "is a mask that hides everything", result);
+    return mask;
 }
 
 void make_surface(const ImageRequest& request, TextureMode mode, ImageCache& images,
                   ImageResult& result) {
     const Image* color = load(request.map, images, result);
     const Image* alpha = load(request.alpha_map, images, result);
-    const std::optional<Mask> mask = find_mask(request, color, alpha);
+    const std::optional<Mask> mask = find_mask(request, color, alpha, result);
     if (mask) {
         const MaskUse use{.cutoff = request.alpha_cutoff,
                           .clamp = mask->map->clamp,
@@ -140,14 +169,24 @@ std::optional<TexelSource> find_normals(const std::optional<TextureMap>& map, bo
     if (!image) {
         return std::nullopt;
     }
-    const bool grey = is_grey(*image);
-    if (!bump && grey) {
+    const bool stated = bump && map->channel != Channel::standard;
+    const Relief relief = stated ? Relief::heights
+                          : bump ? relief_of_bump(*image)
+                                 : relief_of_normals(*image);
+    if (!bump && relief == Relief::heights) {
         warn(*map, "is grey, so it is no normal map", result);
         return std::nullopt;
     }
-    const bool heights = bump && (grey || map->channel != Channel::standard);
-    return heights ? normal_texels_of_heights(*image, map->channel, bump_scale, map->clamp)
-                   : normal_texels(*image);
+    if (relief == Relief::normals_xy)
+        warn(*map, "is a normal map of two channels: blue says nothing; z is made from x and y",
+             result);
+    if (relief == Relief::normals || relief == Relief::normals_xy)
+        return normal_texels(*image, relief == Relief::normals_xy);
+    if (relief == Relief::colors)
+        warn(*map, "is coloured, and no normal map: its luminance is taken as height", result);
+    const bool grey = stated || is_grey(*image);
+    return normal_texels_of_heights(*image, grey ? map->channel : Channel::luminance, bump_scale,
+                                    map->clamp);
 }
 
 MapSettings settings_of(const std::optional<TextureMap>& map) {

@@ -45,10 +45,10 @@ RequestSettings settings_of(const ImageRequest& request);
 /// The map whose image is read for a request whatever it holds.
 const TextureMap& first_map(const ImageRequest& request);
 
-/// An image that cannot be used, and the line that says so.
+/// What is odd about an image.
 struct ImageWarning {
-    std::filesystem::path file;
-    std::string text;
+    std::string stated_in;  ///< as TextureMap has it
+    std::string text;       ///< "FILE: what is odd"
 };
 
 struct ImageResult {

@@ -61,6 +61,11 @@ std::array<std::size_t, 3> color_channels(const Image& image) {
                               : std::array<std::size_t, 3>{0, 1, 2};
 }
 
+/// The same of texels that are vectors.
+std::array<std::size_t, 3> vector_channels(const Image& image) {
+    return image.channels == 2 ? std::array<std::size_t, 3>{0, 1, 1} : color_channels(image);
+}
+
 /// The components apart, since SSE2 has no loads with a stride of 3.
 struct Vectors {
     static constexpr std::size_t kCount = 64;
@@ -77,6 +82,13 @@ CW2_EVERY_CPU void normalise(Vectors& vectors) {
         x[i] *= scale;
         y[i] *= scale;
         z[i] *= scale;
+    }
+}
+
+void rebuild_z(Vectors& vectors) {
+    for (std::size_t i = 0; i < Vectors::kCount; ++i) {
+        const float square = vectors.x[i] * vectors.x[i] + vectors.y[i] * vectors.y[i];
+        vectors.z[i] = std::sqrt(std::max(1.0f - square, 0.0f));
     }
 }
 
@@ -215,10 +227,25 @@ TexelSource masked_color_texels(const Image& image, const TexelSource& mask, flo
             }};
 }
 
-TexelSource normal_texels(const Image& image) {
+TexelSource stored_texels(const Image& image) {
     return {image.width, image.height, 3, [&image](std::uint32_t y, std::span<float> texels) {
                 with_row(image, y, [&](const auto* row) {
-                    const auto [r, g, b] = color_channels(image);
+                    const auto [r, g, b] = vector_channels(image);
+                    const bool has_blue = image.channels != 2;
+                    for (std::size_t i = 0; i < texels.size(); i += 3, row += image.channels) {
+                        texels[i] = to_float(row[r]);
+                        texels[i + 1] = to_float(row[g]);
+                        texels[i + 2] = has_blue ? to_float(row[b]) : 0.0f;
+                    }
+                });
+            }};
+}
+
+TexelSource normal_texels(const Image& image, bool xy_only) {
+    return {image.width, image.height, 3,
+            [&image, xy_only](std::uint32_t y, std::span<float> texels) {
+                with_row(image, y, [&](const auto* row) {
+                    const auto [r, g, b] = vector_channels(image);
                     Vectors vectors;
                     for (std::size_t begin = 0; begin < image.width; begin += Vectors::kCount) {
                         const std::size_t count = std::min(Vectors::kCount, image.width - begin);
@@ -227,6 +254,7 @@ TexelSource normal_texels(const Image& image) {
                             vectors.y[i] = 2.0f * to_float(row[g]) - 1.0f;
                             vectors.z[i] = 2.0f * to_float(row[b]) - 1.0f;
                         }
+                        if (xy_only) rebuild_z(vectors);
                         normalise(vectors);
                         float* out = texels.data() + 3 * begin;
                         for (std::size_t i = 0; i < count; ++i, out += 3) {

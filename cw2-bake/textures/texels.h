@@ -20,8 +20,13 @@ TexelSource color_texels(const Image& image);
 /// covers reaches `cutoff`. The two may differ in size; `mask` has one channel.
 TexelSource masked_color_texels(const Image& image, const TexelSource& mask, float cutoff);
 
-/// Tangent-space vectors, x right and y up: those that an RGB image encodes as 0.5 n + 0.5.
-TexelSource normal_texels(const Image& image);
+/// Red, green and blue as they are stored, in [0, 1] unless floats are outside it. Of an image of
+/// two channels without alpha these are red and green; blue is 0.
+TexelSource stored_texels(const Image& image);
+
+/// Tangent-space vectors, x right and y up: those that an RGB image encodes as 0.5 n + 0.5. With
+/// `xy_only` z is not read, but sqrt(1 - x^2 - y^2).
+TexelSource normal_texels(const Image& image, bool xy_only = false);
 
 /// As normal_texels(), from a height map by central differences; heights are those of the channel
 /// (from an image of floats as they are, not only in [0, 1]) times `scale` in texels.

@@ -161,26 +161,21 @@ mesh_format::SourceRecord source_record(const SourceKey& key, const Placed& plac
             .reserved = 0};
 }
 
-/// One warning an image, in order of first use; those of how the images were found come first.
+/// Each warning of an image once, in order of first use; of one that is not there, how it was
+/// looked for.
 void pass_on_warnings(const std::vector<ImageRequest>& requests,
                       const std::vector<std::optional<ImageResult>>& results, const Warn& warn) {
-    std::set<std::string> notes;
-    std::set<std::filesystem::path> named;
+    std::set<std::string> told;
     for (const ImageRequest& request : requests) {
         for (const auto* map : {&request.map, &request.alpha_map, &request.relief}) {
-            if (!*map || (*map)->note.empty() || !notes.insert((*map)->note).second) continue;
+            if (!*map || (*map)->note.empty() || !told.insert((*map)->note).second) continue;
             warn((*map)->stated_in + ": " + (*map)->note);
-            std::error_code error;
-            if (!std::filesystem::exists((*map)->file, error)) named.insert((*map)->file);
+            told.insert((*map)->file.string() + ": no such file");
         }
     }
-    for (const auto& result : results) {
-        for (const ImageWarning& warning : result->warnings) {
-            if (named.insert(warning.file).second) {
-                warn(warning.text);
-            }
-        }
-    }
+    for (const auto& result : results)
+        for (const ImageWarning& warning : result->warnings)
+            if (told.insert(warning.text).second) warn(warning.stated_in + ": " + warning.text);
 }
 
 }  // namespace

@@ -111,7 +111,8 @@ TEST(AlphaMasks, WhereNothingIsShownTheColourStaysAsItIs) {
     SourceMaterial material;
     material.maps[MapUse::base_color] = map_of(folder / "color.png");
     material.maps[MapUse::alpha_mask] = map_of(folder / "mask.png");
-    const TextureSet set = bake_quietly({material});
+    const TextureSet set = bake::bake_textures({{material}}, bake::TextureMode::lossless, {},
+                                               [](const std::string&) {}, {});
     EXPECT_EQ(first_texels(set.textures[set.materials[0].textures[MapUse::base_color]], 2),
               (std::vector{0, 51}));
     EXPECT_EQ(first_texels(set.textures[set.materials[0].textures[MapUse::alpha_mask]], 2),

@@ -236,6 +236,21 @@ TEST_F(Reuse, WarningsComeAgain) {
     EXPECT_EQ(warnings_, first);
 }
 
+TEST_F(Reuse, WhatAnImageIsTakenForIsSaidAgain) {
+    paint("heights.png", 3, 0.4);
+    write_image(folder_ / "bumps.png", 8, 8, 3, [](int x, int) {
+        return std::vector{0.4 + 0.03 * x, 0.5, 0.0};
+    });
+    write_image(folder_ / "leaf.png", 8, 8, 4, [](int, int) {
+        return std::vector{0.4, 0.5, 0.2, 0.3};
+    });
+    const Bytes first = bake("scene.cw2mesh");
+    const std::vector<std::string> warnings = std::exchange(warnings_, {});
+    ASSERT_EQ(warnings.size(), 3u);
+    EXPECT_TRUE(bake("scene.cw2mesh") == first);
+    EXPECT_EQ(warnings_, warnings);
+}
+
 TEST(SourceKeys, TellEverythingApartThatATextureDependsOn) {
     const TemporaryFolder folder;
     write_bytes(folder / "a.png", "one");
