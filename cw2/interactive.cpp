@@ -216,7 +216,7 @@ class Session {
                 break;
             case CommandKind::copy_camera:
                 window_.copy(camera_flags(state_.options()));
-                tell(camera_flags(state_.options()), "copied the camera");
+                tell(camera_flags(state_.options()), "copied camera and light");
                 break;
             case CommandKind::end:
                 ended_ = true;

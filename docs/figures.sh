@@ -32,16 +32,16 @@ plants="--camera-position 9.35,1.5,0.35 --camera-target 5.9,1.15,-2.9 --light-po
 chain="--camera-position 7.6,1.25,0.2 --camera-target 8.61,0.6,-2.59 --fov 18 \
 --light-position 7,4,3"
 tiles="--camera-position 2.1,1.35,-4.6 --camera-target 2,1.15,-6 --fov 42 \
---light-position 0.6,2.1,-5.65 --exposure 2.3"
+--light-position 0.6,2.1,-5.65"
 brow="--camera-position 2,2.6,2.4 --camera-target 1.15,2.55,1.15 --fov 30 \
---light-position 3.5,4,0.5 --exposure 0.7"
+--light-position 3.5,4,0.5"
 
 draw <<END
 quat48 courtyard.png --size 960x540 $day --time 5.4
 quat48 figures/court.png --size 640x360 $day
 quat48 figures/lion.png --size 640x360 $lion --light-position 5,4.5,2.5
 quat48 figures/plants.png --size 640x360 $plants
-quat48 figures/tiles.png --size 640x360 $tiles --split shaded:no-normal-map,shaded
+quat48 figures/tiles.png --size 640x360 $tiles --exposure 2.3 --split shaded:no-normal-map,shaded
 END
 
 sed 's/^\([^ ]*\)/quat48 figures\/\1.png --size 320x180/' <<END | draw
@@ -67,8 +67,8 @@ foliage-whole $plants --no-alpha-mask
 foliage $plants
 chain-whole $chain --no-alpha-mask
 chain $chain
-brow-flat $brow --no-normal-map
-brow $brow
+brow-flat $brow --exposure 0.7 --no-normal-map
+brow $brow --exposure 0.7
 tiles-vertex-normal $tiles --view vertex-normal
 tiles-normal $tiles --view normal
 brow-vertex-normal $brow --view vertex-normal

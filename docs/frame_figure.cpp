@@ -109,9 +109,11 @@ class Canvas {
 };
 
 void draw_shaded(Canvas& canvas, int left, const Picture& shaded) {
+    const float exposure = std::exp2(cw2::default_exposure(cw2::interop::kViewShaded));
     for (int y = 0; y < shaded.height; ++y) {
         for (int x = 0; x < shaded.width; ++x) {
-            const glm::vec4& p = shaded.pixels[static_cast<std::size_t>(y) * shaded.width + x];
+            const glm::vec4 p =
+                exposure * shaded.pixels[static_cast<std::size_t>(y) * shaded.width + x];
             canvas.set(left + x, y, {encode_srgb(p.r), encode_srgb(p.g), encode_srgb(p.b)});
         }
     }

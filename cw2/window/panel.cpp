@@ -37,7 +37,7 @@ constexpr std::array kKeys{
     KeyHelp{"1 to 9, V, Shift+V", "views"},
     KeyHelp{"N, M", "normal maps, alpha masks"},
     KeyHelp{"R", "resets camera and light"},
-    KeyHelp{"Ctrl+C", "copies the camera as options"},
+    KeyHelp{"Ctrl+C", "copies camera and light as options"},
     KeyHelp{"F2, S in here", "saves the settings"},
     KeyHelp{"F12, Shift+F12", "saves the picture, the window"},
     KeyHelp{"F5, Ctrl+R", "reloads the shaders"},
@@ -193,7 +193,11 @@ void exposure_row(Options& options) {
     if (options.exposure) {
         ImGui::SliderFloat("##exposure", &*options.exposure, -10.0f, 10.0f, "%+.1f stops", kClamp);
     } else {
-        ImGui::TextDisabled("%+.2f stops", static_cast<double>(default_exposure(view)));
+        std::string stops = fmt::format("{:+.2f}", default_exposure(view));
+        if (options.split) {
+            stops += fmt::format(" | {:+.2f}", default_exposure(options.split->back().view));
+        }
+        ImGui::TextDisabled("%s stops", stops.c_str());
     }
 }
 
@@ -326,9 +330,12 @@ std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state) {
 
 std::string camera_flags(const Options& options) {
     const auto vector = [](const glm::dvec3& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
-    return fmt::format("--camera-position {} --camera-target {} --fov {}",
-                       vector(*options.camera_position), vector(*options.camera_target),
-                       *options.vertical_fov);
+    std::string flags =
+        fmt::format("--camera-position {} --camera-target {} --fov {} --light-position {}",
+                    vector(*options.camera_position), vector(*options.camera_target),
+                    *options.vertical_fov, vector(*options.light_position));
+    if (options.time != 0.0) flags += fmt::format(" --time {}", options.time);
+    return flags;
 }
 
 }  // namespace cw2

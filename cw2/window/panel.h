@@ -44,7 +44,8 @@ void draw_readings(const PanelFacts& facts);
 /// Draws all of it, the readings too; gives the commands of the buttons pressed.
 std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state);
 
-/// The camera as options of the command line.
+/// The camera, and where the light is, as options of the command line: without the latter it would
+/// follow the camera.
 std::string camera_flags(const Options& options);
 
 }  // namespace cw2

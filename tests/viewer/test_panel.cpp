@@ -147,11 +147,13 @@ TEST_F(Panel, WithoutTheMouseItChangesNothing) {
     EXPECT_EQ(state_.light_moves, before.light_moves);
 }
 
-TEST(CameraFlags, AreReadAsTheSameCamera) {
+TEST(CameraFlags, AreReadAsTheSameCameraAndLight) {
     Options options;
     options.camera_position = glm::vec3(-0.1f, 1.0f / 3.0f, -1e-7f);
     options.camera_target = glm::vec3(12345.678f, -2.0f, 3.0f);
     options.vertical_fov = 33.3f;
+    options.light_position = glm::vec3(-7.7f, 1e-3f, 0.3f);
+    options.time = 0.1;
     std::vector<std::string> words{"cw2", "scene.cw2mesh"};
     std::istringstream flags(camera_flags(options));
     for (std::string word; flags >> word;) words.push_back(word);
@@ -162,6 +164,8 @@ TEST(CameraFlags, AreReadAsTheSameCamera) {
     EXPECT_EQ(read.camera_position, options.camera_position);
     EXPECT_EQ(read.camera_target, options.camera_target);
     EXPECT_EQ(read.vertical_fov, options.vertical_fov);
+    EXPECT_EQ(read.light_position, options.light_position);
+    EXPECT_EQ(read.time, options.time);
 }
 
 }  // namespace
