@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "cw2-bake/gltf/json.h"
+#include "cw2-bake/gltf/meshopt.h"
 
 namespace bake {
 namespace {
@@ -70,20 +71,28 @@ int GltfAccessors::components(int accessor) const {
     return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(at(accessor).type));
 }
 
+std::span<const std::byte> GltfAccessors::view_bytes(int index) {
+    const auto& view = file_.model.bufferViews[static_cast<std::size_t>(index)];
+    if (view.extensions.contains(kMeshoptExtension)) {
+        const auto [entry, fresh] = decompressed_.try_emplace(index);
+        if (fresh) entry->second = decode_meshopt(file_, static_cast<std::size_t>(index));
+        return entry->second;
+    }
+    return file_.view_bytes(index);
+}
+
 std::vector<std::byte> GltfAccessors::view_elements(int accessor, int view_index,
                                                     std::size_t offset, std::size_t count,
                                                     std::size_t element_bytes,
-                                                    bool may_have_stride) const {
+                                                    bool may_have_stride) {
     const auto& view = file_.model.bufferViews[static_cast<std::size_t>(view_index)];
-    const auto buffer = file_.buffers[static_cast<std::size_t>(view.buffer)];
-    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
-        fail_at(file_.path, fmt::format("/bufferViews/{}", view_index), "reaches past its buffer");
+    const std::span<const std::byte> bytes = view_bytes(view_index);
     const std::size_t stride =
         may_have_stride && view.byteStride > 0 ? view.byteStride : element_bytes;
     // No overflow: counts, offsets and strides have been checked to be far below 2^64.
-    if (offset + stride * (count - 1) + element_bytes > view.byteLength)
+    if (offset + stride * (count - 1) + element_bytes > bytes.size())
         fail(accessor, "reaches past its buffer view");
-    const std::byte* from = buffer.data() + view.byteOffset + offset;
+    const std::byte* from = bytes.data() + offset;
     std::vector<std::byte> elements(count * element_bytes);
     for (std::size_t i = 0; i < count; ++i)
         std::memcpy(elements.data() + i * element_bytes, from + i * stride, element_bytes);
@@ -91,7 +100,7 @@ std::vector<std::byte> GltfAccessors::view_elements(int accessor, int view_index
 }
 
 void GltfAccessors::apply_sparse(int index, std::size_t element_bytes,
-                                 std::vector<std::byte>& elements) const {
+                                 std::vector<std::byte>& elements) {
     const auto& accessor = at(index);
     const auto& sparse = accessor.sparse;
     const auto count = static_cast<std::size_t>(sparse.count);
@@ -112,7 +121,7 @@ void GltfAccessors::apply_sparse(int index, std::size_t element_bytes,
     }
 }
 
-std::vector<std::byte> GltfAccessors::packed_elements(int index) const {
+std::vector<std::byte> GltfAccessors::packed_elements(int index) {
     const auto& accessor = at(index);
     const std::size_t element_bytes =
         static_cast<std::size_t>(components(index)) * component_bytes(accessor.componentType);
@@ -180,7 +189,7 @@ std::vector<float> GltfAccessors::take_floats(int index, int wanted_components) 
     return read_floats(index, wanted_components, NotFinite::is_error);
 }
 
-std::vector<std::uint32_t> GltfAccessors::indices(int index) const {
+std::vector<std::uint32_t> GltfAccessors::indices(int index) {
     const auto& accessor = at(index);
     if (components(index) != 1 || !is_unsigned(accessor.componentType))
         fail(index, "holds no indices: scalars of an unsigned type");

@@ -35,7 +35,7 @@ class GltfAccessors {
     std::vector<float> take_floats(int accessor, int components);
 
     /// Scalars of an unsigned type.
-    std::vector<std::uint32_t> indices(int accessor) const;
+    std::vector<std::uint32_t> indices(int accessor);
 
     /// Forgets what floats() gave, but for these: primitives often share accessors, but a file may
     /// claim more elements in all than memory holds.
@@ -50,17 +50,18 @@ class GltfAccessors {
     const tinygltf::Accessor& at(int accessor) const {
         return file_.model.accessors[static_cast<std::size_t>(accessor)];
     }
-    std::vector<std::byte> packed_elements(int accessor) const;
+    std::span<const std::byte> view_bytes(int view);
+    std::vector<std::byte> packed_elements(int accessor);
     std::vector<std::byte> view_elements(int accessor, int view, std::size_t offset,
                                          std::size_t count, std::size_t element_bytes,
-                                         bool may_have_stride) const;
-    void apply_sparse(int accessor, std::size_t element_bytes,
-                      std::vector<std::byte>& elements) const;
+                                         bool may_have_stride);
+    void apply_sparse(int accessor, std::size_t element_bytes, std::vector<std::byte>& elements);
 
     const GltfFile& file_;
     const Warn& warn_;
     std::map<int, std::vector<float>> floats_;
-    std::set<int> not_finite_;  ///< accessors of which a warning told
+    std::map<int, std::vector<std::byte>> decompressed_;  ///< buffer views
+    std::set<int> not_finite_;                            ///< accessors of which a warning told
 };
 
 }  // namespace bake

@@ -163,6 +163,10 @@ class Loader {
             const json& buffer = array("buffers")[i];
             const auto length = buffer["byteLength"].get<std::size_t>();
             try {
+                if (is_fallback(buffer)) {
+                    file_.buffers.emplace_back();
+                    continue;
+                }
                 const Bytes bytes = buffer_bytes(buffer, i);
                 if (bytes.size() < length) {
                     throw BakeError(fmt::format("holds {} bytes of {}", bytes.size(), length));
@@ -216,6 +220,13 @@ class Loader {
         static json none = json::array();
         const auto found = root_.find(name);
         return found == root_.end() ? none : *found;
+    }
+
+    /// What readers without EXT_meshopt_compression would take.
+    static bool is_fallback(const json& buffer) {
+        const json::json_pointer extension("/extensions/EXT_meshopt_compression");
+        return buffer.contains(extension) &&
+               (buffer[extension].value("fallback", false) || !buffer.contains("uri"));
     }
 
     Bytes buffer_bytes(const json& buffer, std::size_t index) {
@@ -280,6 +291,14 @@ class Loader {
 };
 
 }  // namespace
+
+Bytes GltfFile::view_bytes(int index) const {
+    const auto& view = model.bufferViews[static_cast<std::size_t>(index)];
+    const Bytes buffer = buffers[static_cast<std::size_t>(view.buffer)];
+    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
+        fail_at(path, fmt::format("/bufferViews/{}", index), "reaches past its buffer");
+    return buffer.subspan(view.byteOffset, view.byteLength);
+}
 
 GltfFile load_gltf(const std::filesystem::path& path, const Warn& warn) {
     GltfFile file;

@@ -37,6 +37,9 @@ struct GltfFile {
     std::vector<std::filesystem::path> buffer_files;  ///< that were read
     std::vector<std::string> unread;                  ///< what find_unread() says
 
+    /// The bytes of a view as they lie in its buffer. Throws BakeError where it reaches past it.
+    std::span<const std::byte> view_bytes(int view) const;
+
     /// What the spans point into.
     std::list<common::MappedFile> mapped;
     std::list<std::vector<std::byte>> decoded;

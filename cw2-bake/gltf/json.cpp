@@ -24,8 +24,9 @@ constexpr int kDeepest = 64;
 using Kind = JsonKind;
 using Member = JsonMember;
 
-constexpr std::string_view kKnownExtensions[] = {"KHR_texture_transform", "KHR_mesh_quantization",
-                                                 "KHR_lights_punctual", "EXT_texture_webp"};
+constexpr std::string_view kKnownExtensions[] = {
+    "KHR_texture_transform", "KHR_mesh_quantization",   "KHR_lights_punctual",
+    "EXT_texture_webp",      "EXT_meshopt_compression", "KHR_draco_mesh_compression"};
 
 class Checker {
  public:
@@ -85,6 +86,11 @@ class Checker {
                                 [&](json& e, const auto& at) { check_index(e, member, at); });
             case Kind::lookup:
                 return check_lookup(value, member, pointer);
+            case Kind::ids:
+                if (!value.is_object()) fail(pointer, "is no object");
+                for (auto& [key, id] : value.items())
+                    check_value(id, {nullptr, Kind::small}, pointer + '/' + key);
+                return;
             case Kind::lookups:
                 return elements(value, pointer,
                                 [&](json& e, const auto& at) { check_lookup(e, member, at); });

@@ -1,6 +1,9 @@
 #include "cw2-bake/gltf/read_gltf.h"
 
+#include <set>
+
 #include "cw2-bake/geometry/origin.h"
+#include "cw2-bake/gltf/draco.h"
 #include "cw2-bake/gltf/file.h"
 #include "cw2-bake/gltf/nodes.h"
 #include "cw2-bake/gltf/primitives.h"
@@ -8,6 +11,15 @@
 
 namespace bake {
 namespace {
+
+std::set<int> shown_meshes(const GltfFile& file, const GltfNodes& nodes) {
+    std::set<int> meshes;
+    for (const int node : nodes.shown) {
+        const int mesh = file.model.nodes[static_cast<std::size_t>(node)].mesh;
+        if (mesh >= 0) meshes.insert(mesh);
+    }
+    return meshes;
+}
 
 SourceScene triangles_of(const GltfFile& file, const GltfNodes& nodes, const Warn& warn) {
     SourceScene scene;
@@ -22,9 +34,10 @@ SourceScene triangles_of(const GltfFile& file, const GltfNodes& nodes, const War
 }  // namespace
 
 SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn) {
-    const GltfFile file = load_gltf(path, warn);
+    GltfFile file = load_gltf(path, warn);
     for (const std::string& what : file.unread) warn(path.string() + ": " + what);
     GltfNodes nodes = walk_nodes(file, warn);
+    decode_draco(file, shown_meshes(file, nodes));
     SourceScene scene = triangles_of(file, nodes, warn);
     if (const auto origin = distant_origin(scene.positions, scene.corners)) {
         for (glm::dmat4& world_from_node : nodes.world_from_node)

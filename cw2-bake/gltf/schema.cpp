@@ -25,16 +25,37 @@ constexpr Member kAccessor[] = {{"bufferView", Kind::index, false, "bufferViews"
                                 {"count", Kind::count, kRequired},
                                 {"type", Kind::text, kRequired},
                                 {"sparse", Kind::object, false, {}, 0, kSparse}};
-constexpr Member kBuffer[] = {{"byteLength", Kind::count, kRequired}, {"uri", Kind::text}};
-constexpr Member kBufferView[] = {{"buffer", Kind::index, kRequired, "buffers"},
-                                  {"byteOffset", Kind::count},
-                                  {"byteLength", Kind::count, kRequired},
-                                  {"byteStride", Kind::count}};
+constexpr Member kFallback[] = {{"fallback", Kind::boolean}};
+constexpr Member kBufferExtensions[] = {
+    {"EXT_meshopt_compression", Kind::object, false, {}, 0, kFallback}};
+constexpr Member kBuffer[] = {{"byteLength", Kind::count, kRequired},
+                              {"uri", Kind::text},
+                              {"extensions", Kind::object, false, {}, 0, kBufferExtensions}};
+constexpr Member kMeshopt[] = {{"buffer", Kind::index, kRequired, "buffers"},
+                               {"byteOffset", Kind::small},
+                               {"byteLength", Kind::small, kRequired},
+                               {"byteStride", Kind::small, kRequired},
+                               {"count", Kind::small, kRequired},
+                               {"mode", Kind::text, kRequired},
+                               {"filter", Kind::text}};
+constexpr Member kBufferViewExtensions[] = {
+    {"EXT_meshopt_compression", Kind::object, false, {}, 0, kMeshopt}};
+constexpr Member kBufferView[] = {
+    {"buffer", Kind::index, kRequired, "buffers"},
+    {"byteOffset", Kind::count},
+    {"byteLength", Kind::count, kRequired},
+    {"byteStride", Kind::count},
+    {"extensions", Kind::object, false, {}, 0, kBufferViewExtensions}};
+constexpr Member kDraco[] = {{"bufferView", Kind::index, kRequired, "bufferViews"},
+                             {"attributes", Kind::ids, kRequired}};
+constexpr Member kPrimitiveExtensions[] = {
+    {"KHR_draco_mesh_compression", Kind::object, false, {}, 0, kDraco}};
 constexpr Member kPrimitive[] = {{"attributes", Kind::lookup, kRequired, "accessors"},
                                  {"indices", Kind::index, false, "accessors"},
                                  {"material", Kind::index, false, "materials"},
                                  {"mode", Kind::small},
-                                 {"targets", Kind::lookups, false, "accessors"}};
+                                 {"targets", Kind::lookups, false, "accessors"},
+                                 {"extensions", Kind::object, false, {}, 0, kPrimitiveExtensions}};
 constexpr Member kMesh[] = {{"name", Kind::text},
                             {"primitives", Kind::objects, kRequired, {}, 0, kPrimitive},
                             {"weights", Kind::numbers}};

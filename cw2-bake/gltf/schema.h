@@ -20,6 +20,7 @@ enum class JsonKind : std::uint8_t {
     indices,  ///< an array of indices
     lookup,   ///< an object whose members are indices
     lookups,  ///< an array of such
+    ids,      ///< an object whose members are of kind small
     texts,    ///< an array of texts
 };
 

@@ -1,0 +1,91 @@
+// The module around Draco, loaded by draco.cpp when a glTF is compressed with it: other bakes need
+// not start with one library more.
+#include "cw2-bake/gltf/draco_reader.h"
+
+#include <draco/compression/decode.h>
+#include <draco/mesh/mesh.h>
+
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <type_traits>
+
+namespace {
+
+using bake::DracoAttribute;
+using bake::DracoMesh;
+
+/// Each vertex's values in the type T, as the accessor wants them.
+template <typename T>
+void copy_values(const draco::PointAttribute& from, std::size_t vertices, DracoAttribute& to) {
+    const auto components = static_cast<std::size_t>(to.components);
+    to.values.resize(vertices * components * sizeof(T));
+    T value[16];
+    for (std::size_t i = 0; i < vertices; ++i) {
+        const draco::PointIndex point(static_cast<std::uint32_t>(i));
+        if (!from.ConvertValue<T>(from.mapped_index(point), static_cast<std::int8_t>(components),
+                                  value))
+            throw std::runtime_error("an attribute does not fit its accessor");
+        std::memcpy(to.values.data() + i * components * sizeof(T), value, components * sizeof(T));
+    }
+}
+
+void copy_attribute(const draco::PointAttribute& from, std::size_t vertices, DracoAttribute& to) {
+    if (from.num_components() != to.components)
+        throw std::runtime_error("an attribute and its accessor differ in components");
+    switch (to.component_type) {
+        case 5120:
+            return copy_values<std::int8_t>(from, vertices, to);
+        case 5121:
+            return copy_values<std::uint8_t>(from, vertices, to);
+        case 5122:
+            return copy_values<std::int16_t>(from, vertices, to);
+        case 5123:
+            return copy_values<std::uint16_t>(from, vertices, to);
+        case 5125:
+            return copy_values<std::uint32_t>(from, vertices, to);
+        default:
+            return copy_values<float>(from, vertices, to);
+    }
+}
+
+void read(std::span<const std::byte> data, DracoMesh& mesh) {
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(data.data()), data.size());
+    draco::Decoder decoder;
+    auto result = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!result.ok()) throw std::runtime_error(result.status().error_msg_string());
+    const std::unique_ptr<draco::Mesh> decoded = std::move(result).value();
+    if (!decoded || decoded->num_faces() == 0) throw std::runtime_error("it holds no triangles");
+    mesh.vertex_count = decoded->num_points();
+    mesh.indices.reserve(std::size_t{3} * decoded->num_faces());
+    for (std::uint32_t i = 0; i < decoded->num_faces(); ++i)
+        for (const draco::PointIndex point : decoded->face(draco::FaceIndex(i)))
+            mesh.indices.push_back(point.value());
+    for (DracoAttribute& attribute : mesh.attributes) {
+        const draco::PointAttribute* const found = decoded->GetAttributeByUniqueId(attribute.id);
+        if (!found) {
+            throw std::runtime_error("it holds no attribute " + std::to_string(attribute.id));
+        }
+        copy_attribute(*found, mesh.vertex_count, attribute);
+    }
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) bool cw2_bake_draco_reader(
+    std::span<const std::byte> data, DracoMesh& mesh, std::string& error) {
+    try {
+        read(data, mesh);
+        return true;
+    } catch (const std::bad_alloc&) {
+        error = "it needs more memory than there is";
+    } catch (const std::exception& exception) {
+        error = exception.what();
+    }
+    return false;
+}
+
+static_assert(std::is_same_v<decltype(cw2_bake_draco_reader), bake::DracoReader>);
