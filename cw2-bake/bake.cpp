@@ -15,6 +15,7 @@
 #include "cw2-bake/geometry/tangents.h"
 #include "cw2-bake/geometry/up_axis.h"
 #include "cw2-bake/geometry/weld.h"
+#include "cw2-bake/gltf/materials.h"
 #include "cw2-bake/gltf/read_gltf.h"
 #include "cw2-bake/gltf/write_gltf.h"
 #include "cw2-bake/input_files.h"
@@ -221,6 +222,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
     generate_normals(scene);
     clock.end("normals");
     const TextureSet textures = make_textures(settings, scene, warn);
+    if (is_gltf(settings.input)) warn_of_blending(scene.materials, textures.materials, warn);
     clock.end("textures");
     const std::vector<UvBudget> budgets = uv_budgets(textures);
     weld(scene);

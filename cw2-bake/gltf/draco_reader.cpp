@@ -1,5 +1,6 @@
 // The module around Draco, loaded by draco.cpp when a glTF is compressed with it: other bakes need
-// not start with one library more.
+// not start with one library more. And its library holds a tinygltf of its own, which would take the
+// place of ours if the program were linked with both.
 #include "cw2-bake/gltf/draco_reader.h"
 
 #include <draco/compression/decode.h>
@@ -62,7 +63,7 @@ void read(std::span<const std::byte> data, DracoMesh& mesh) {
     mesh.vertex_count = decoded->num_points();
     mesh.indices.reserve(std::size_t{3} * decoded->num_faces());
     for (std::uint32_t i = 0; i < decoded->num_faces(); ++i)
-        for (const draco::PointIndex point : decoded->face(draco::FaceIndex(i)))
+        for (const draco::PointIndex& point : decoded->face(draco::FaceIndex(i)))
             mesh.indices.push_back(point.value());
     for (DracoAttribute& attribute : mesh.attributes) {
         const draco::PointAttribute* const found = decoded->GetAttributeByUniqueId(attribute.id);

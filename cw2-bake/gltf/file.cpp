@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "common/file_kind.h"
 #include "cw2-bake/base/file_finder.h"
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/gltf/json.h"
@@ -269,9 +270,17 @@ class Loader {
                 resolve(finder_, file_.path, uri->get_ref<const std::string&>());
             found.file = named.file;
             found.note = named.note;
-            return;
         }
-        found.file = unique_name(image, index);
+        if (found.embedded) found.file = unique_name(image, index);
+        if (is_ktx2(image, found)) throw BakeError("is a KTX2 texture, which is not read");
+    }
+
+    static bool is_ktx2(const json& image, const GltfImage& found) {
+        if (image.value("mimeType", "") == "image/ktx2") return true;
+        if (!found.embedded) return common::lower_extension(found.file) == ".ktx2";
+        constexpr std::string_view kMagic = "\xABKTX 20\xBB";
+        return found.embedded->size() >= kMagic.size() &&
+               std::memcmp(found.embedded->data(), kMagic.data(), kMagic.size()) == 0;
     }
 
     Bytes view_bytes(const json& view) const {

@@ -1,6 +1,7 @@
 #include "cw2-bake/gltf/geometry.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -8,6 +9,7 @@
 #include <glm/vec4.hpp>
 #include <limits>
 
+#include "cw2-bake/textures/srgb.h"
 #include "mesh-format/tangent_frame.h"
 
 namespace bake {
@@ -26,6 +28,7 @@ struct Vertices {
     std::vector<glm::vec3> positions, normals;
     std::vector<glm::vec4> tangents;
     std::vector<glm::vec2> uvs;
+    std::vector<glm::u16vec4> colors;  ///< linear, 65535 is 1; empty if the mesh has none
 };
 
 /// A vector as the vertices hold it: floats, or words q that stand for origin + step * q.
@@ -40,6 +43,17 @@ glm::vec<N, float> vector_of(const std::byte* bytes, bool words, const glm::vec<
     glm::vec<N, std::uint16_t> q;
     std::memcpy(&q, bytes, sizeof q);
     return origin + step * glm::vec<N, float>(q);
+}
+
+/// Every byte that a channel may be is another word.
+glm::u16vec4 linear_words(const std::byte* color) {
+    glm::u16vec4 words;
+    for (int channel = 0; channel < 4; ++channel) {
+        const auto byte = std::to_integer<std::uint8_t>(color[channel]);
+        const float linear = channel < 3 ? srgb().to_linear(byte) : byte / 255.0f;
+        words[channel] = static_cast<std::uint16_t>(std::lround(65535.0f * linear));
+    }
+    return words;
 }
 
 Vertices vertices_of(const Document& document, const MeshRecord& mesh) {
@@ -58,6 +72,8 @@ Vertices vertices_of(const Document& document, const MeshRecord& mesh) {
         vertices.normals.emplace_back(frame.normal[0], frame.normal[1], frame.normal[2]);
         vertices.tangents.emplace_back(frame.tangent[0], frame.tangent[1], frame.tangent[2],
                                        frame.handedness);
+        if (mesh.forms.color != mesh_format::ColorForm::none)
+            vertices.colors.push_back(linear_words(vertex + layout.color_offset));
         vertices.uvs.push_back(
             vector_of<2>(vertex + layout.uv_offset, mesh.forms.uv == UvForm::quantised,
                          glm::make_vec2(mesh.uv_origin), glm::make_vec2(mesh.uv_step)));
@@ -80,7 +96,9 @@ class View {
         return offset;
     }
 
+    /// Adds nothing where there is nothing: a view must not be empty.
     void finish(GltfGeometry& geometry) {
+        if (bytes_.empty()) return;
         ordered_json view{
             {"buffer", 0}, {"byteOffset", geometry.bytes.size()}, {"byteLength", bytes_.size()}};
         if (stride_ > 0) view["byteStride"] = stride_;
@@ -105,12 +123,12 @@ class Builder {
 
     GltfGeometry build() {
         for (const MeshRecord& mesh : document_.meshes) add(mesh);
-        for (View& view : views_) view.finish(geometry_);
+        for (View& view : views_) view.finish(geometry_);  // that of the colours is the last
         return std::move(geometry_);
     }
 
  private:
-    enum : std::size_t { kPositions, kNormals, kTangents, kUvs, kIndices };
+    enum : std::size_t { kPositions, kNormals, kTangents, kUvs, kIndices, kColors };
 
     void add(const MeshRecord& mesh) {
         const Vertices vertices = vertices_of(document_, mesh);
@@ -120,6 +138,10 @@ class Builder {
         attributes["NORMAL"] = add(kNormals, vertices.normals, "VEC3", kFloat);
         attributes["TANGENT"] = add(kTangents, vertices.tangents, "VEC4", kFloat);
         attributes["TEXCOORD_0"] = add(kUvs, vertices.uvs, "VEC2", kFloat);
+        if (!vertices.colors.empty()) {
+            attributes["COLOR_0"] = add(kColors, vertices.colors, "VEC4", kUnsignedShort);
+            geometry_.accessors.back()["normalized"] = true;
+        }
         const auto indices = document_.indices.subspan(mesh.first_index, mesh.index_count);
         const bool fits = mesh.vertex_count <= 0xFFFF;  // index 65,535 would mean a restart
         const std::size_t accessor =
@@ -160,11 +182,8 @@ class Builder {
 
     const Document& document_;
     GltfGeometry geometry_;
-    View views_[5] = {{kArrayBuffer, 12},
-                      {kArrayBuffer, 12},
-                      {kArrayBuffer, 16},
-                      {kArrayBuffer, 8},
-                      {kElementArrayBuffer, 0}};
+    View views_[6] = {{kArrayBuffer, 12}, {kArrayBuffer, 12},       {kArrayBuffer, 16},
+                      {kArrayBuffer, 8},  {kElementArrayBuffer, 0}, {kArrayBuffer, 8}};
 };
 
 }  // namespace

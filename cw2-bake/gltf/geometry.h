@@ -20,8 +20,9 @@ struct GltfGeometry {
     glm::vec3 low, high;  ///< bounding box
 };
 
-/// Everything as 32-bit floats, which every viewer reads; indices of 16 bits but where a mesh has
-/// so many vertices that one would mean a restart. The document's geometry is not encoded.
+/// Everything as 32-bit floats, which every viewer reads; colours of 16 bits, indices of 16 bits
+/// but where a mesh has so many vertices that one would mean a restart. The document's geometry is
+/// not encoded.
 GltfGeometry make_gltf_geometry(const mesh_format::Document& document);
 
 }  // namespace bake

@@ -23,12 +23,12 @@ using mesh_format::MaterialRecord;
 using mesh_format::TextureFormat;
 using mesh_format::TextureRecord;
 
-enum class Use : std::uint8_t { color, metallic_roughness, normal };
+enum class Use : std::uint8_t { color, metallic_roughness, normal, emission };
 
 /// An image of up to two textures, each kNoTexture or one that exists.
 struct Key {
     Use use;
-    std::uint32_t first;   ///< base colour, roughness, or normal
+    std::uint32_t first;   ///< base colour, roughness, normal, or emission
     std::uint32_t second;  ///< alpha mask, metalness, or none
     auto operator<=>(const Key&) const = default;
 };
@@ -178,7 +178,8 @@ GltfImages make_gltf_images(const Document& document, TexturePayloads payloads, 
         result.materials.push_back({add({Use::color, textures[MapUse::base_color], mask}),
                                     add({Use::metallic_roughness, textures[MapUse::roughness],
                                          textures[MapUse::metalness]}),
-                                    add({Use::normal, textures[MapUse::normal], kNoTexture})});
+                                    add({Use::normal, textures[MapUse::normal], kNoTexture}),
+                                    add({Use::emission, textures[MapUse::emission], kNoTexture})});
     }
     result.images.resize(keys.size());
     tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) {

@@ -23,6 +23,7 @@ struct GltfMaterialImages {
     std::uint32_t color = kNoImage;  ///< and the alpha mask in alpha
     std::uint32_t metallic_roughness = kNoImage;
     std::uint32_t normal = kNoImage;
+    std::uint32_t emission = kNoImage;
 };
 
 struct GltfImages {

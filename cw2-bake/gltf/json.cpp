@@ -24,9 +24,14 @@ constexpr int kDeepest = 64;
 using Kind = JsonKind;
 using Member = JsonMember;
 
-constexpr std::string_view kKnownExtensions[] = {
-    "KHR_texture_transform", "KHR_mesh_quantization",   "KHR_lights_punctual",
-    "EXT_texture_webp",      "EXT_meshopt_compression", "KHR_draco_mesh_compression"};
+constexpr std::string_view kKnownExtensions[] = {"KHR_texture_transform",
+                                                 "KHR_mesh_quantization",
+                                                 "KHR_lights_punctual",
+                                                 "EXT_texture_webp",
+                                                 "EXT_meshopt_compression",
+                                                 "KHR_draco_mesh_compression",
+                                                 "KHR_materials_emissive_strength",
+                                                 "KHR_materials_unlit"};
 
 class Checker {
  public:
@@ -219,7 +224,8 @@ void check_required_extensions(const json& root, const Checker& checker) {
         const std::string& name = (*required)[i].get_ref<const std::string&>();
         if (is_known_extension(name)) continue;
         checker.fail(fmt::format("/extensionsRequired/{}", i),
-                     fmt::format("the extension {} is not supported", in_quotes(name)));
+                     fmt::format("the extension {} is not supported{}", in_quotes(name),
+                                 name == kBasisuExtension ? ": KTX2 textures are not read" : ""));
     }
 }
 

@@ -14,6 +14,9 @@ namespace bake {
 [[noreturn]] void fail_at(const std::filesystem::path& path, std::string_view pointer,
                           std::string_view what);
 
+/// Of textures whose image is a KTX2; not read.
+inline constexpr std::string_view kBasisuExtension = "KHR_texture_basisu";
+
 /// Whether the reader does what the extension says.
 bool is_known_extension(std::string_view name);
 

@@ -26,6 +26,16 @@ float clamped(double value) {
     return static_cast<float>(std::clamp(value, 0.0, 1.0));
 }
 
+std::string drawn_opaque(const SourceMaterial& material) {
+    return fmt::format("{} has alpha {:.3g}; drawn opaque", in_quotes(material.name),
+                       material.opacity);
+}
+
+/// Of the first of several; says how many there are.
+void warn_of_first(const std::string& what, std::size_t count, const Warn& warn) {
+    if (count > 0) warn(what + (count > 1 ? fmt::format(" ({} such materials)", count) : ""));
+}
+
 }  // namespace
 
 glm::dvec2 UvTransform::apply(const glm::dvec2& uv) const {
@@ -106,8 +116,28 @@ void GltfMaterials::take_mask(const tinygltf::Material& material, const std::str
                               in_quotes(source.name)));
         }
     } else if (material.alphaMode == "BLEND") {
-        warn_(fmt::format("{}: {} is blended; it is drawn with a mask that cuts below alpha 0.5",
-                          place, in_quotes(source.name)));
+        const auto& factor = material.pbrMetallicRoughness.baseColorFactor;
+        source.blend = true;
+        source.opacity = factor.size() == 4 ? clamped(factor[3]) : 1.0f;
+        if (!source.maps[MapUse::base_color] && source.opacity < 1.0f && opaque_++ == 0)
+            first_opaque_ = place + ": " + drawn_opaque(source);
+    }
+}
+
+void GltfMaterials::take_emission(const tinygltf::Material& material, const std::string& place,
+                                  SourceMaterial& source) {
+    source.unlit = material.extensions.contains("KHR_materials_unlit");
+    if (source.unlit || material.emissiveFactor.size() != 3) return;
+    double strength = 1.0;
+    if (const auto extension = material.extensions.find("KHR_materials_emissive_strength");
+        extension != material.extensions.end()) {
+        strength = std::max(number_or(extension->second.Get("emissiveStrength"), 1.0), 0.0);
+    }
+    for (int channel = 0; channel < 3; ++channel) {
+        const double factor = material.emissiveFactor[static_cast<std::size_t>(channel)];
+        source.emission[channel] = static_cast<float>(std::max(factor, 0.0) * strength);
+        if (!std::isfinite(source.emission[channel]))
+            throw BakeError(place + "/emissiveFactor: is too large");
     }
 }
 
@@ -149,17 +179,24 @@ GltfMaterial GltfMaterials::convert(int index) {
         source.maps[MapUse::metalness] = map;
     }
     take_mask(material, place, result);
+    const TextureUse glow(material.emissiveTexture);
+    take_emission(material, place, source);
+    if (source.emission != glm::vec3(0.0f))
+        source.maps[MapUse::emission] = texture_map(glow, place);
 
     const TextureUse* chosen = nullptr;
-    for (const TextureUse* use : {&color, &normal, &rough}) {
-        if (use->texture < 0) continue;
+    for (const TextureUse* use : {&color, &normal, &rough, &glow}) {
+        if (use->texture < 0 || (use == &glow && !source.maps[MapUse::emission])) continue;
         if (!chosen) {
             chosen = use;
         } else if (use->uv_set != chosen->uv_set || use->transform != chosen->transform) {
-            warn_(fmt::format(
-                "{}: the textures of {} differ in UV set or transform; all take "
-                "those of the {}",
-                place, in_quotes(source.name), chosen == &color ? "base colour" : "normal map"));
+            warn_(
+                fmt::format("{}: the textures of {} differ in UV set or transform; all take "
+                            "those of the {}",
+                            place, in_quotes(source.name),
+                            chosen == &color    ? "base colour"
+                            : chosen == &normal ? "normal map"
+                                                : "roughness"));
             break;
         }
     }
@@ -168,6 +205,37 @@ GltfMaterial GltfMaterials::convert(int index) {
         result.uv_transform = chosen->transform;
     }
     return result;
+}
+
+void GltfMaterials::warn_of_left_out() const {
+    warn_of_first(first_opaque_, opaque_, warn_);
+}
+
+void warn_of_blending(std::span<const SourceMaterial> materials,
+                      std::span<const MaterialTextures> textures, const Warn& warn) {
+    std::string first_masked, first_opaque;
+    std::size_t masked = 0, opaque = 0;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const auto& map = materials[i].maps[MapUse::base_color];
+        if (!materials[i].blend || !map) continue;
+        if (textures[i].textures[MapUse::alpha_mask] != mesh_format::kNoTexture) {
+            if (masked++ == 0) {
+                first_masked = fmt::format(
+                    "{}: {} is blended; it is drawn with a mask that cuts below alpha 0.5",
+                    map->stated_in, in_quotes(materials[i].name));
+            }
+        } else if (opaque++ == 0) {
+            first_opaque =
+                map->stated_in + ": " +
+                (materials[i].opacity < 1.0f
+                     ? drawn_opaque(materials[i])
+                     : in_quotes(materials[i].name) +
+                           " is blended, but its texture's alpha is nowhere below 0.5; drawn "
+                           "opaque");
+        }
+    }
+    warn_of_first(first_masked, masked, warn);
+    warn_of_first(first_opaque, opaque, warn);
 }
 
 }  // namespace bake

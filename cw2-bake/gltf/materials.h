@@ -3,9 +3,13 @@
 
 #include <glm/vec2.hpp>
 #include <set>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/gltf/file.h"
+#include "cw2-bake/textures/texture.h"
 
 namespace bake {
 
@@ -34,21 +38,34 @@ class GltfMaterials {
 
     /// The material of this index, or for -1 that of primitives with none. Warns of what cannot be
     /// drawn as it says:
-    /// - BLEND becomes a mask that cuts below half of the texture's alpha; the factor's is ignored.
+    /// - BLEND is opaque, but where half of the texture's alpha masks; warn_of_blending() tells
+    ///   which.
     /// - Textures of one material share a UV set and a transform: those of the base colour, else
     ///   of the normal map, else of the metallic-roughness texture.
     /// - A sampler that mirrors, or clamps along one axis alone, repeats.
     GltfMaterial convert(int index);
+
+    /// Of what was said for several materials at once.
+    void warn_of_left_out() const;
 
  private:
     struct TextureUse;
     std::optional<TextureMap> texture_map(const TextureUse& use, const std::string& place);
     void take_mask(const tinygltf::Material& material, const std::string& place,
                    GltfMaterial& result);
+    static void take_emission(const tinygltf::Material& material, const std::string& place,
+                              SourceMaterial& source);
 
     const GltfFile& file_;
     const Warn& warn_;
     std::set<int> unusable_images_;  ///< of which a warning told
+    std::string first_opaque_;       ///< what becomes of the first blended one without a texture
+    std::size_t opaque_ = 0;
 };
+
+/// Warns of the blended materials of a glTF that have a texture, now that it is known which of them
+/// have a mask; the others are told by GltfMaterials.
+void warn_of_blending(std::span<const SourceMaterial> materials,
+                      std::span<const MaterialTextures> textures, const Warn& warn);
 
 }  // namespace bake

@@ -14,6 +14,7 @@
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/gltf/json.h"
 #include "cw2-bake/gltf/pose.h"
+#include "cw2-bake/textures/srgb.h"
 
 namespace bake {
 namespace {
@@ -86,6 +87,8 @@ struct GltfPrimitives::Arrays {
     const std::vector<float>* normals = nullptr;
     const std::vector<float>* tangents = nullptr;
     const std::vector<float>* uvs = nullptr;
+    const std::vector<float>* colors = nullptr;
+    std::size_t color_components = 4;
     std::optional<GltfSkin> skin{};
 
     std::list<std::vector<float>> morphed{};  ///< what some of the pointers point to
@@ -129,6 +132,7 @@ class GltfPrimitives::Adder {
         return arrays_.skin ? mirrored_[v - first_] : node_.mirrored;
     }
     const glm::vec4& tangent(std::uint32_t v) const { return tangents_[v - first_]; }
+    std::uint32_t color(std::uint32_t v) const { return colors_[v - first_]; }
 
  private:
     void add(std::uint32_t i, const Placement& placement) {
@@ -151,7 +155,18 @@ class GltfPrimitives::Adder {
             tangents_.push_back(usable ? glm::vec4(t, placement.mirrored ? -w : w)
                                        : glm::vec4(0.0f));
         }
+        if (arrays_.colors) colors_.push_back(color_of(i));
         if (arrays_.skin) mirrored_.push_back(placement.mirrored);
+    }
+
+    /// As SourceScene::colors has it; the file's is linear.
+    std::uint32_t color_of(std::uint32_t i) const {
+        const float* const color = arrays_.colors->data() + arrays_.color_components * i;
+        std::uint32_t packed = 0;
+        for (int channel = 2; channel >= 0; --channel)
+            packed = packed << 8 | srgb().to_srgb8(color[channel]);
+        const float alpha = arrays_.color_components == 4 ? std::clamp(color[3], 0.0f, 1.0f) : 1.0f;
+        return packed | static_cast<std::uint32_t>(std::lround(255.0f * alpha)) << 24;
     }
 
     glm::vec2 uv(std::uint32_t i) const {
@@ -176,7 +191,8 @@ class GltfPrimitives::Adder {
     const Placement node_;
     const std::uint32_t first_;
     std::vector<glm::vec4> tangents_;  ///< of the new vertices
-    std::vector<bool> mirrored_;       ///< of those of a skin
+    std::vector<std::uint32_t> colors_;
+    std::vector<bool> mirrored_;  ///< of those of a skin
 };
 
 GltfPrimitives::GltfPrimitives(const GltfFile& file, const GltfNodes& nodes, const Warn& warn,
@@ -249,8 +265,8 @@ GltfPrimitives::Arrays GltfPrimitives::read_arrays(const tinygltf::Node& node,
     const int normals = attribute_of(primitive, "NORMAL");
     const int tangents = normals < 0 ? -1 : attribute_of(primitive, "TANGENT");
     const int uvs = attribute_of(primitive, uv_name);
-    accessors_.keep_only(std::array{positions, normals, tangents, uvs});
-    colors_ |= attribute_of(primitive, "COLOR_0") >= 0;
+    const int colors = attribute_of(primitive, "COLOR_0");
+    accessors_.keep_only(std::array{positions, normals, tangents, uvs, colors});
     const std::vector<double> weights =
         morph_weights(node, file_.model.meshes[static_cast<std::size_t>(node.mesh)], primitive);
 
@@ -272,6 +288,16 @@ GltfPrimitives::Arrays GltfPrimitives::read_arrays(const tinygltf::Node& node,
     arrays.normals = read(normals, "NORMAL", 3);
     arrays.tangents = read(tangents, "TANGENT", 4);
     arrays.uvs = read(uvs, uv_name, 2);
+    if (colors >= 0) {
+        arrays.color_components = accessors_.components(colors) == 3 ? 3 : 4;
+        arrays.colors = read(colors, "COLOR_0", static_cast<int>(arrays.color_components));
+    }
+    const auto& maps = material.of.source.maps.values;
+    if (uvs < 0 && std::ranges::any_of(maps, [](const auto& map) { return map.has_value(); }) &&
+        without_uvs_++ == 0) {
+        first_without_uvs_ =
+            fmt::format("{}: has no {}, which its textures ask for", place, uv_name);
+    }
     if (node.skin >= 0 && GltfSkin::has_joints(primitive))
         arrays.skin.emplace(file_, joints(node.skin), primitive, accessors_, arrays.count);
     return arrays;
@@ -311,7 +337,9 @@ void GltfPrimitives::add_primitive(int node_index, const tinygltf::Primitive& pr
     const std::vector<std::uint32_t> indices = read_indices(primitive, arrays.count, place);
 
     Adder adder(*this, arrays, material, place, nodes_.world_from_node[node]);
+    constexpr std::uint32_t kWhite = 0xFFFF'FFFF;
     if (arrays.tangents) scene_.tangents.resize(scene_.corners.size(), glm::vec4(0.0f));
+    if (arrays.colors) scene_.colors.resize(scene_.corners.size(), kWhite);
     for (const auto& triangle : triangles_of(mode, indices)) {
         const bool mirrored = adder.is_mirrored(adder.vertex(triangle[0]));
         for (std::size_t k = 0; k < 3; ++k) {
@@ -320,12 +348,14 @@ void GltfPrimitives::add_primitive(int node_index, const tinygltf::Primitive& pr
             some_without_normals_ |= !has_normal;
             scene_.corners.push_back({.position = v, .normal = has_normal ? v : kAbsent, .uv = v});
             if (arrays.tangents) scene_.tangents.push_back(adder.tangent(v));
+            if (arrays.colors) scene_.colors.push_back(adder.color(v));
         }
         scene_.triangle_material.push_back(material.index);
     }
     // Only what was used: a few triangles of a long accessor may be shown again and again.
     for (const std::uint32_t i : indices) new_index_[i] = kUnused;
     if (!scene_.tangents.empty()) scene_.tangents.resize(scene_.corners.size(), glm::vec4(0.0f));
+    if (!scene_.colors.empty()) scene_.colors.resize(scene_.corners.size(), kWhite);
     if (some_without_normals_) scene_.smoothing_group.resize(scene_.triangle_material.size(), 0);
 }
 
@@ -343,7 +373,9 @@ void GltfPrimitives::warn_of_left_out() const {
         warn_(fmt::format("{}: {}: points and lines are left out ({} primitives)", name,
                           first_points_or_lines_, points_or_lines_));
     }
-    if (colors_) warn_(name + ": vertex colours are left out");
+    converter_.warn_of_left_out();
+    if (without_uvs_ > 0)
+        warn_(fmt::format("{}: {} ({} primitives)", name, first_without_uvs_, without_uvs_));
 }
 
 }  // namespace bake

@@ -71,7 +71,8 @@ class GltfPrimitives {
     std::size_t most_corners_;
     std::size_t points_or_lines_ = 0;
     std::string first_points_or_lines_;
-    bool colors_ = false;
+    std::size_t without_uvs_ = 0;
+    std::string first_without_uvs_;
     bool some_without_normals_ = false;
 };
 

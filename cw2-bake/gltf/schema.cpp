@@ -93,12 +93,18 @@ constexpr Member kSurface[] = {
     {"metallicFactor", Kind::number},
     {"roughnessFactor", Kind::number},
     {"metallicRoughnessTexture", Kind::object, false, {}, 0, kTextureInfo}};
+constexpr Member kStrength[] = {{"emissiveStrength", Kind::number}};
+constexpr Member kMaterialExtensions[] = {
+    {"KHR_materials_emissive_strength", Kind::object, false, {}, 0, kStrength},
+    {"KHR_materials_unlit", Kind::object}};
 constexpr Member kMaterial[] = {{"name", Kind::text},
                                 {"pbrMetallicRoughness", Kind::object, false, {}, 0, kSurface},
                                 {"normalTexture", Kind::object, false, {}, 0, kTextureInfo},
                                 {"alphaMode", Kind::text},
                                 {"alphaCutoff", Kind::number},
                                 {"emissiveFactor", Kind::numbers, false, {}, 3},
+                                {"emissiveTexture", Kind::object, false, {}, 0, kTextureInfo},
+                                {"extensions", Kind::object, false, {}, 0, kMaterialExtensions},
                                 {"doubleSided", Kind::boolean}};
 constexpr Member kSampler[] = {{"wrapS", Kind::small}, {"wrapT", Kind::small}};
 constexpr Member kWebp[] = {{"source", Kind::index, false, "images"}};
@@ -106,8 +112,10 @@ constexpr Member kTextureExtensions[] = {{"EXT_texture_webp", Kind::object, fals
 constexpr Member kTexture[] = {{"sampler", Kind::index, false, "samplers"},
                                {"source", Kind::index, false, "images"},
                                {"extensions", Kind::object, false, {}, 0, kTextureExtensions}};
-constexpr Member kImage[] = {
-    {"name", Kind::text}, {"uri", Kind::text}, {"bufferView", Kind::index, false, "bufferViews"}};
+constexpr Member kImage[] = {{"name", Kind::text},
+                             {"mimeType", Kind::text},
+                             {"uri", Kind::text},
+                             {"bufferView", Kind::index, false, "bufferViews"}};
 constexpr Member kPerspective[] = {{"yfov", Kind::number, kRequired},
                                    {"znear", Kind::number, kRequired}};
 constexpr Member kOrthographic[] = {{"xmag", Kind::number, kRequired},

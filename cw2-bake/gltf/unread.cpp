@@ -67,8 +67,6 @@ class Finder {
             found != root.end() && found->is_array() && !found->empty())
             note("animations are left out: the scene is in its pose at load", "/animations");
         each(root, "materials", [&](const json& material, const std::string& pointer) {
-            if (material.contains("emissiveFactor"))
-                note("emission is left out", pointer + "/emissiveFactor");
             if (material.contains("occlusionTexture"))
                 note("ambient occlusion is left out", pointer + "/occlusionTexture");
         });
@@ -97,6 +95,11 @@ class Finder {
             for (const auto& [name, extension] : member.items()) {
                 if (is_known_extension(name)) {
                     descend(extension, below + '/' + name);
+                } else if (name == kBasisuExtension) {
+                    note(
+                        "KTX2 textures (KHR_texture_basisu) are not read; the image beside it is "
+                        "taken, if there is one",
+                        below + '/' + name);
                 } else if (!is_beside_looks(name)) {
                     note(fmt::format("the extension {} is not supported, and left out",
                                      in_quotes(name)),

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -26,15 +27,42 @@ using mesh_format::MaterialRecord;
 using mesh_format::SceneRecord;
 using nlohmann::ordered_json;
 
-ordered_json json_of(const glm::vec3& v) {
+template <typename T>
+ordered_json json_of(const glm::vec<3, T>& v) {
     return {v.x, v.y, v.z};
+}
+
+/// Adds the emission, and that there is no light. A factor of glTF is at most 1; what goes beyond
+/// is a strength.
+void add_glow(const MaterialRecord& material, const GltfMaterialImages& images,
+              ordered_json& json) {
+    if (material.flags & mesh_format::kUnlit)
+        json["extensions"]["KHR_materials_unlit"] = ordered_json::object();
+    const glm::vec3 emission = glm::make_vec3(material.emission);
+    const float largest = std::max({emission.r, emission.g, emission.b});
+    if (largest == 0.0f) return;
+    json["emissiveFactor"] = json_of(largest > 1.0f ? emission / largest : emission);
+    if (largest > 1.0f)
+        json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = largest;
+    if (images.emission != kNoImage) json["emissiveTexture"] = {{"index", images.emission}};
+}
+
+/// The names of the extensions that the materials have.
+void add_used_extensions(ordered_json& root) {
+    for (const char* name : {"KHR_materials_emissive_strength", "KHR_materials_unlit"}) {
+        const bool used = std::ranges::any_of(root["materials"], [&](const ordered_json& material) {
+            return material.contains("extensions") && material["extensions"].contains(name);
+        });
+        if (used) root["extensionsUsed"].push_back(name);
+    }
 }
 
 ordered_json material_json(const Document& document, const MaterialRecord& material,
                            const GltfMaterialImages& images) {
     ordered_json surface;
     const glm::vec3 color = glm::make_vec3(material.base_color);
-    surface["baseColorFactor"] = {color.r, color.g, color.b, 1.0f};
+    const bool blends = material.flags & mesh_format::kBlend;
+    surface["baseColorFactor"] = {color.r, color.g, color.b, blends ? material.opacity : 1.0f};
     surface["metallicFactor"] = material.metalness;
     surface["roughnessFactor"] = material.roughness;
     const auto texture = [](std::uint32_t image) { return ordered_json{{"index", image}}; };
@@ -48,7 +76,10 @@ ordered_json material_json(const Document& document, const MaterialRecord& mater
         json["normalTexture"] = texture(images.normal);
         json["normalTexture"]["scale"] = material.normal_scale;
     }
-    if (material.flags & mesh_format::kAlphaMask) {
+    add_glow(material, images, json);
+    if (blends) {
+        json["alphaMode"] = "BLEND";
+    } else if (material.flags & mesh_format::kAlphaMask) {
         json["alphaMode"] = "MASK";
         json["alphaCutoff"] = material.alpha_cutoff;
     }
@@ -60,6 +91,10 @@ ordered_json material_json(const Document& document, const MaterialRecord& mater
     return json;
 }
 
+glm::dvec3 origin_of(const SceneRecord& scene) {
+    return glm::make_vec3(scene.origin);
+}
+
 /// Adds a camera and its node.
 void add_camera(const SceneRecord& scene, ordered_json& root) {
     const glm::dvec3 position(glm::make_vec3(scene.camera_position));
@@ -68,12 +103,12 @@ void add_camera(const SceneRecord& scene, ordered_json& root) {
     const glm::dvec3 up =
         std::abs(sight.y) < 0.9999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, -1.0);
     const glm::dquat rotation = glm::quatLookAtRH(sight, up);
-    const float near = std::max(1e-4f * scene.radius, 1e-6f);
+    const float near = std::max(1e-4f * scene.radius, std::numeric_limits<float>::min());
     root["cameras"].push_back(
         {{"type", "perspective"}, {"perspective", {{"yfov", scene.camera_fov}, {"znear", near}}}});
     root["nodes"].push_back({{"name", "camera"},
                              {"camera", 0},
-                             {"translation", json_of(glm::vec3(position))},
+                             {"translation", json_of(origin_of(scene) + position)},
                              {"rotation", {rotation.x, rotation.y, rotation.z, rotation.w}}});
 }
 
@@ -91,7 +126,7 @@ void add_light(const SceneRecord& scene, const GltfGeometry& geometry, ordered_j
          {"color", json_of(largest > 0.0f ? color / largest : glm::vec3(1.0f))},
          {"intensity", largest * distance * distance}});
     root["nodes"].push_back({{"name", "light"},
-                             {"translation", json_of(glm::vec3(position))},
+                             {"translation", json_of(origin_of(scene) + position)},
                              {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
 }
 
@@ -184,11 +219,14 @@ std::uint64_t write_gltf(const Document& document, TexturePayloads payloads,
     root["asset"] = {{"version", "2.0"}, {"generator", "cw2-bake " CW2_VERSION}};
     root["scene"] = 0;
     root["nodes"].push_back({{"name", path.stem().string()}, {"mesh", 0}});
+    if (const glm::dvec3 origin = origin_of(document.scene); origin != glm::dvec3(0.0))
+        root["nodes"][0]["translation"] = json_of(origin);
     root["meshes"][0]["primitives"] = std::move(geometry.primitives);
     for (std::size_t i = 0; i < document.materials.size(); ++i) {
         root["materials"].push_back(
             material_json(document, document.materials[i], images.materials[i]));
     }
+    add_used_extensions(root);
     if (document.scene.flags & mesh_format::kHasCamera) add_camera(document.scene, root);
     if (document.scene.flags & mesh_format::kHasLight) add_light(document.scene, geometry, root);
     add_images(images, geometry, root);

@@ -10,11 +10,11 @@
 
 namespace bake {
 
-/// Writes a .glb, or a .gltf that holds its buffer as a data URI: positions, normals, tangents,
-/// UVs, materials with PNG images, and the camera and light if the document has them (see
-/// gltf_light.h). A material whose back faces keep their normals says so in its
-/// extras, as "cw2_back_normals": "kept", which read_gltf() honours. Warns as make_gltf_images()
-/// does.
+/// Writes a .glb, or a .gltf that holds its buffer as a data URI: positions below a node that moves
+/// them by the scene's origin, normals, tangents, UVs, colours, materials with PNG images, and the
+/// camera and light if the document has them (see light.h). A material whose back faces keep their
+/// normals says so in its extras, as "cw2_back_normals": "kept", which read_gltf() honours. Warns
+/// as make_gltf_images() does.
 ///
 /// `document` is not encoded; `payloads` holds the bytes of its textures. Written beside `path` and
 /// renamed. Returns the file's size. Throws common::FileError.

@@ -1,6 +1,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "cw2-bake/gltf/materials.h"
 #include "tests/unit/gltf_reading.h"
 
 namespace {
@@ -102,12 +103,130 @@ TEST_F(GltfMaterials, TheCutoffIsHeldAgainstFactorTimesTexture) {
                                                   "its alpha is below its cutoff"});
 }
 
-TEST_F(GltfMaterials, BlendedMaterialsBecomeMasksWithAWarning) {
-    const SourceMaterial m = material({{"name", "glass"}, {"alphaMode", "BLEND"}});
+TEST_F(GltfMaterials, BlendedMaterialsAreOpaqueOrMaskedAndTheWarningSaysWhich) {
+    json source{{"name", "glass"}, {"alphaMode", "BLEND"}};
+    source["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.3};
+    SourceMaterial m = material(source);
+    EXPECT_TRUE(m.blend);
+    EXPECT_EQ(m.opacity, 0.3f);
+    EXPECT_EQ(warnings_, std::vector<std::string>{
+                             "scene.glb: /materials/0: 'glass' has alpha 0.3; drawn opaque"});
+    material({{"name", "glass"}, {"alphaMode", "BLEND"}});
+    EXPECT_TRUE(warnings_.empty());  // nothing of it can be seen through
+    m = material({{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.3}}}}});
+    EXPECT_FALSE(m.blend);
+    EXPECT_EQ(m.opacity, 1);
+    EXPECT_TRUE(warnings_.empty());
+
+    // With a texture it is known only later whether there is a mask.
+    source["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+    m = material(source);
     EXPECT_TRUE(m.base_color_alpha_is_mask);
     EXPECT_EQ(m.alpha_cutoff, 0.5f);
-    ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_TRUE(warnings_[0].starts_with("scene.glb: /materials/0: 'glass' is blended"));
+    EXPECT_TRUE(warnings_.empty());
+    std::vector<std::string> said;
+    const auto warn = [&](const std::string& what) {
+        said.push_back(what.substr(what.find("scene.glb")));
+    };
+    bake::MaterialTextures with_mask;
+    with_mask.textures[MapUse::alpha_mask] = 0;
+    SourceMaterial whole = m;
+    whole.opacity = 1;
+    bake::warn_of_blending(std::vector{m, m, m, whole}, std::vector{with_mask, with_mask, {}, {}},
+                           warn);
+    bake::warn_of_blending(std::vector{whole}, std::vector<bake::MaterialTextures>(1), warn);
+    const std::string place = "scene.glb: /materials/0: 'glass' ";
+    EXPECT_EQ(said, (std::vector<std::string>{
+                        place + "is blended; it is drawn with a mask that cuts below alpha 0.5 (2 "
+                                "such materials)",
+                        place + "has alpha 0.3; drawn opaque (2 such materials)",
+                        place + "is blended, but its texture's alpha is nowhere below 0.5; drawn "
+                                "opaque"}));
+}
+
+TEST_F(GltfMaterials, EmissionHasItsStrengthAndUnlitHasNone) {
+    json source{{"emissiveFactor", {1, 0.5, 0}}, {"emissiveTexture", {{"index", 2}}}};
+    SourceMaterial m = material(source);
+    EXPECT_EQ(m.emission, glm::vec3(1, 0.5f, 0));
+    EXPECT_EQ(name(m.maps[MapUse::emission]), "c.png");
+    EXPECT_FALSE(m.unlit);
+    source["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 8;
+    EXPECT_EQ(material(source).emission, glm::vec3(8, 4, 0));
+    source["extensions"]["KHR_materials_unlit"] = json::object();
+    m = material(source);
+    EXPECT_TRUE(m.unlit);
+    EXPECT_EQ(m.emission, glm::vec3(0));
+    EXPECT_FALSE(m.maps[MapUse::emission]);
+    EXPECT_TRUE(warnings_.empty());
+    source = {{"emissiveTexture", {{"index", 2}}}};  // the factor is 0 unless it is stated
+    EXPECT_FALSE(material(source).maps[MapUse::emission]);
+}
+
+TEST_F(GltfMaterials, VertexColoursAreEncodedAndLackingOnesAreWhite) {
+    GltfWriter gltf = with_material({{"name", "stone"}});
+    json& primitives = gltf.root["meshes"][0]["primitives"];
+    primitives.push_back(primitives[0]);
+    primitives.push_back(primitives[0]);
+    primitives[1]["attributes"]["COLOR_0"] = gltf.accessor<float>(
+        {1, 0.5f, 0, 0.25f, 0, 0, 0, 1, 1, 1, 1, 1, -1, 2, 0.2f, 0}, kFloat, "VEC4");
+    SourceScene scene = read(gltf);
+    ASSERT_EQ(scene.colors.size(), 18u);
+    EXPECT_EQ(scene.colors[0], 0xFFFF'FFFF);
+    EXPECT_EQ(scene.colors[6], 0x4000'BCFF);  // linear 0.5 is sRGB 188
+    EXPECT_EQ(scene.colors[7], 0xFF00'0000);
+    EXPECT_EQ(scene.colors[11], 0x007C'FF00);
+    EXPECT_EQ(scene.colors[17], 0xFFFF'FFFF);
+    primitives[1]["attributes"]["COLOR_0"] = gltf.accessor<std::uint8_t>(
+        {255, 55, 0, 0, 0, 0, 255, 255, 255, 1, 1, 1}, kUbyte, "VEC3", true);
+    scene = read(gltf);
+    EXPECT_EQ(scene.colors[6], 0xFF00'80FF);  // linear 55/255 is sRGB 128
+    primitives[1]["attributes"]["COLOR_0"] = gltf.accessor<std::uint16_t>(
+        {65535, 0, 0, 65535, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, kUshort, "VEC4", true);
+    EXPECT_EQ(read(gltf).colors[6], 0xFF00'00FF);
+    EXPECT_TRUE(warnings_.empty());
+    primitives[1]["attributes"].erase("COLOR_0");
+    EXPECT_TRUE(read(gltf).colors.empty());
+}
+
+TEST_F(GltfMaterials, Ktx2TexturesAreNamed) {
+    json source;
+    source["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+    GltfWriter gltf = with_material(source);
+    gltf.root["extensionsUsed"] = {"KHR_texture_basisu"};
+    gltf.root["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 1;
+    const std::string said =
+        "scene.glb: /textures/0/extensions/KHR_texture_basisu: KTX2 textures (KHR_texture_basisu) "
+        "are not read; the image beside it is taken, if there is one";
+    EXPECT_EQ(name(read(gltf).materials.at(0).maps[MapUse::base_color]), "a.png");
+    EXPECT_EQ(warnings_, std::vector<std::string>{said});
+    gltf.root["textures"][0].erase("source");
+    EXPECT_FALSE(read(gltf).materials.at(0).maps[MapUse::base_color]);
+    EXPECT_EQ(warnings_,
+              (std::vector<std::string>{said, "scene.glb: /materials/0: texture 0 has no image"}));
+    gltf.root["extensionsRequired"] = {"KHR_texture_basisu"};
+    EXPECT_EQ(error(gltf),
+              "scene.glb: /extensionsRequired/0: the extension 'KHR_texture_basisu' is not "
+              "supported: KTX2 textures are not read");
+
+    // Without the extension.
+    gltf = with_material(source);
+    const std::vector<std::uint8_t> ktx{0xAB, 'K', 'T', 'X', ' ', '2', '0', 0xBB, '\r', '\n'};
+    for (const json& image : {json{{"uri", "a.KTX2"}}, json{{"bufferView", gltf.view(ktx)}},
+                              json{{"uri", "a.bin"}, {"mimeType", "image/ktx2"}}}) {
+        gltf.root["images"][0] = image;
+        read(gltf);
+        EXPECT_EQ(warnings_, std::vector<std::string>{
+                                 "scene.glb: /images/0: is a KTX2 texture, which is not read"});
+    }
+}
+
+TEST_F(GltfMaterials, TexturesWithoutUvsAreSaid) {
+    json source;
+    source["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}, {"texCoord", 1}};
+    read(with_material(source));
+    EXPECT_EQ(warnings_, std::vector<std::string>{
+                             "scene.glb: /meshes/0/primitives/0: has no TEXCOORD_1, which "
+                             "its textures ask for (1 primitives)"});
 }
 
 TEST_F(GltfMaterials, SamplersClampOrRepeat) {
