@@ -48,9 +48,9 @@ const Damage kDamages[] = {
     {"/asset/version: is no string",
      [](GltfWriter& g) { g.root["asset"]["version"] = json::array(); }},
     {"/asset: has no version", [](GltfWriter& g) { g.root["asset"] = json::object(); }},
-    {"/extensionsRequired/1: the extension 'KHR_draco_mesh_compression' is not supported",
+    {"/extensionsRequired/1: the extension 'KHR_materials_sheen' is not supported",
      [](GltfWriter& g) {
-         g.root["extensionsRequired"] = {"KHR_texture_transform", "KHR_draco_mesh_compression"};
+         g.root["extensionsRequired"] = {"KHR_texture_transform", "KHR_materials_sheen"};
      }},
     {"/materials/0/normalTexture/scale: is too large",
      [](GltfWriter& g) {
