@@ -24,6 +24,7 @@ mesh-format/decode.cpp  | meshoptimizer.h zstd.h fmt/* tbb/*
 cw2-bake/*              | common/* mesh-format/* glm/* fmt/* tbb/* CLI/* meshoptimizer.h zstd.h xxhash.h
 cw2-bake/obj/*          | fast_float/* emmintrin.h
 cw2-bake/gltf/*         | tiny_gltf.h nlohmann/json.hpp
+cw2-bake/gltf/draco_reader.cpp | draco/*
 cw2-bake/textures/*     | png.h jpeglib.h jerror.h OpenImageIO/*
 cw2/*                   | common/* mesh-format/* shaders/interop.h shaders/false_color.h glm/* fmt/* tbb/* vulkan/*
 cw2/render/*            | *.vert.h *.frag.h *.comp.h glslang/* SPIRV/* Imf*.h
