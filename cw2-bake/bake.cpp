@@ -4,6 +4,11 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <new>
 #include <thread>
 
 #include "common/file_kind.h"
@@ -41,7 +46,29 @@ bool is_gltf(const std::filesystem::path& path) {
 }
 
 SourceScene read_scene(const std::filesystem::path& path, const Warn& warn) {
-    return is_gltf(path) ? read_gltf(path, warn) : read_obj(path, warn);
+    try {
+        return is_gltf(path) ? read_gltf(path, warn) : read_obj(path, warn);
+    } catch (const std::bad_alloc&) {
+        throw BakeError(path.string() + ": there is not enough memory to read it");
+    }
+}
+
+/// Throws BakeError if the box of the packed scene, or its radius, is beyond what floats hold.
+void check_extent(const mesh_format::SceneRecord& packed, const SourceScene& scene,
+                  const std::filesystem::path& path) {
+    bool finite = std::isfinite(packed.radius);
+    for (int axis = 0; axis < 3; ++axis) {
+        finite &= std::isfinite(packed.bounds_min[axis]) && std::isfinite(packed.bounds_max[axis]);
+    }
+    if (finite) return;
+    glm::dvec3 low{scene.positions.front()}, high = low;
+    for (const glm::dvec3 position : scene.positions) {
+        low = glm::min(low, position);
+        high = glm::max(high, position);
+    }
+    throw BakeError(fmt::format("{}: its extent, {:g}, is too near the largest float, {:g}",
+                                path.string(), glm::length(high - low),
+                                std::numeric_limits<float>::max()));
 }
 
 TextureSet make_textures(const Settings& settings, const SourceScene& scene, const Warn& warn) {
@@ -162,6 +189,24 @@ void add_start(const SourceScene& source, mesh_format::SceneRecord& record) {
     }
 }
 
+/// Returns the file's size in bytes. Throws BakeError if it would show nothing: of triangles with
+/// two equal corners readers of glTF make none.
+std::uint64_t write_export(const mesh_format::Document& document,
+                           std::span<const std::span<const std::byte>> payloads,
+                           const Settings& settings, const Warn& warn) {
+    const std::span<const std::uint16_t> indices = document.indices;
+    bool shows = false;
+    for (std::size_t i = 0; i < indices.size() && !shows; i += 3) {
+        shows = indices[i] != indices[i + 1] && indices[i + 1] != indices[i + 2] &&
+                indices[i + 2] != indices[i];
+    }
+    if (!shows) {
+        throw BakeError(settings.input.string() +
+                        ": shows no triangles: two corners of each are equal");
+    }
+    return write_gltf(document, payloads, settings.output, warn);
+}
+
 /// Returns the file's size in bytes.
 std::uint64_t write_baked(const mesh_format::Document& document,
                           std::span<const std::span<const std::byte>> payloads,
@@ -196,7 +241,7 @@ std::string export_baked(const Settings& settings, const Warn& warn) {
     std::vector<std::span<const std::byte>> payloads;
     for (const TextureRecord& texture : document.textures)
         payloads.push_back(document.payload(texture));
-    const std::uint64_t bytes = write_gltf(document, payloads, settings.output, warn);
+    const std::uint64_t bytes = write_export(document, payloads, settings, warn);
     if (settings.depfile) write_depfile(*settings.depfile, rule);
     return fmt::format("{}\n{}", settings.output.string(), export_summary(document, bytes));
 }
@@ -235,6 +280,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
     clock.end("chunks");
     PackedGeometry geometry =
         quantise(framed_scene, chunked, budgets, {settings.frame_form, settings.position_form});
+    check_extent(geometry.scene, scene, settings.input);
     add_start(scene, geometry.scene);
     const Tables tables = make_tables(scene.materials, textures);
     clock.end("pack");
@@ -256,9 +302,8 @@ std::string bake(const Settings& settings, const Warn& warn) {
         document.indices = geometry.indices;
     }
     const bool exports = is_gltf(settings.output);
-    const std::uint64_t bytes = exports
-                                    ? write_gltf(document, tables.payloads, settings.output, warn)
-                                    : write_baked(document, tables.payloads, settings.output);
+    const std::uint64_t bytes = exports ? write_export(document, tables.payloads, settings, warn)
+                                        : write_baked(document, tables.payloads, settings.output);
     clock.end("write");
     if (settings.depfile) write_depfile(*settings.depfile, rule);
     if (settings.stats)

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 
 #include "common/io.h"
@@ -32,8 +33,13 @@ void run(const bake::Settings& settings) {
         if (settings.strict) throw bake::BakeError(warning);
         if (!settings.quiet) tell("warning: " + warning);
     };
-    const std::string summary =
-        settings.is_baked ? bake::export_baked(settings, warn) : bake::bake(settings, warn);
+    std::string summary;
+    try {
+        summary =
+            settings.is_baked ? bake::export_baked(settings, warn) : bake::bake(settings, warn);
+    } catch (const std::bad_alloc&) {
+        throw bake::BakeError(settings.input.string() + ": there is not enough memory to bake it");
+    }
     if (!settings.quiet) std::fputs(summary.c_str(), stdout);
 }
 

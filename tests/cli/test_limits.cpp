@@ -1,0 +1,52 @@
+// Inputs at the ends of what can be: no area, coordinates near the largest float, no memory.
+#include "tests/cli/scene_folder.h"
+
+namespace {
+
+class Limits : public SceneFolder {};
+
+TEST_F(Limits, AnExportThatWouldShowNothingIsRefused) {
+    const std::string flat = "v 0 0 0\nv 0 0 0\nv 1 1 1\nf 1 1 1\nf 1 2 3\n";
+    write("flat.obj", flat);
+    bake_well({"flat.obj", "-o", "flat.cw2mesh", "--quiet"});
+    for (const char* input : {"flat.obj", "flat.cw2mesh"}) {
+        const Outcome outcome = bake({input, "-o", "flat.glb"});
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_EQ(outcome.err, std::string("cw2-bake: ") + input +
+                                   ": shows no triangles: two corners of each are equal\n");
+        EXPECT_FALSE(std::filesystem::exists(here("flat.glb")));
+    }
+    write("flat.obj", flat + "v 2 2 2\nf 1 3 4\n");  // a line, but of distinct corners
+    bake_well({"flat.obj", "-o", "flat.glb", "--quiet"});
+    bake_well({"flat.glb", "-o", "again.cw2mesh", "--quiet"});
+}
+
+TEST_F(Limits, CoordinatesNearTheLargestFloatAreBlamedOnTheInput) {
+    for (const char* text : {"v 0 0 -1e30\nv 3.40282e38 0 0\nv 0 1 0\nf 1 2 3\n",
+                             "v 1e-30 1500 0\nv 0 5 -1e30\nv 3.40282e38 0 0\nf 1 2 3\nf 3 2 1\n",
+                             "v 3e38 3e38 3e38\nv -3e38 -3e38 -3e38\nv 0 1 0\nf 1 2 3\n"}) {
+        write("far.obj", text);
+        for (const char* output : {"far.cw2mesh", "far.glb"}) {
+            const Outcome outcome =
+                bake({"far.obj", "-o", output, "--positions", "quantised", "--quiet"});
+            EXPECT_EQ(outcome.status, 1);
+            EXPECT_TRUE(outcome.err.starts_with("cw2-bake: far.obj: its extent, ")) << outcome.err;
+            EXPECT_FALSE(std::filesystem::exists(here(output)));
+        }
+    }
+}
+
+#if !defined(__SANITIZE_ADDRESS__)
+TEST_F(Limits, ALackOfMemorySaysWhatWasRead) {
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 3'000'000; ++i) text += "f 1 2 3\n";
+    write("many.obj", text);
+    const Outcome outcome = run({"bash", "-c", "ulimit -v 120000; exec \"$0\" \"$@\"", BAKE_PROGRAM,
+                                 "many.obj", "--quiet", "--threads", "1"},
+                                {{}, folder_.path()});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.err, "cw2-bake: many.obj: there is not enough memory to read it\n");
+}
+#endif
+
+}  // namespace
