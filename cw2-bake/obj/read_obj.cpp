@@ -291,10 +291,10 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
     if (const auto origin = distant_origin(contents.scene.positions, contents.scene.corners))
         contents = parse_obj(text, name, chunk_bytes, *origin);
     SourceScene& scene = contents.scene;
+    if (scene.corners.empty()) throw BakeError(name + ": has no faces");
     for (const ObjError& warning : contents.warnings) {
         warn(fmt::format("{}:{}: {}", name, line_number(text, warning.offset), warning.what));
     }
-    if (scene.corners.empty()) throw BakeError(name + ": has no faces");
     triangulate_polygons(contents.polygons, scene);
     if (contents.lacks_normals) prepare_missing_normals(contents.smoothing_uses, scene);
 

@@ -133,7 +133,6 @@ TEST_F(Cli, BakeRefusesWhatIsNoScene) {
         {"no_faces.obj", "v 0 0 0\nv 1 0 0\n", {"no_faces.obj: ", "face"}},
         {"index.obj", std::string(kTriangle) + "f 1 2 4\n", {"index.obj:5: ", "4"}},
         {"index_zero.obj", std::string(kTriangle) + "f 1 2 0\n", {"index_zero.obj:5: "}},
-        {"index_uv.obj", std::string(kTriangle) + "\nf 1/1 2/1 3/1\n", {"index_uv.obj:6: "}},
         {"nan.obj", std::string("v 0 nan 0\n") + kTriangle, {"nan.obj:1: "}},
         {"infinite.obj", std::string("v 0 1e99 0\n") + kTriangle, {"infinite.obj:1: "}},
         {"word.obj", std::string("v 0 zero 0\n") + kTriangle, {"word.obj:1: "}},
@@ -165,6 +164,10 @@ TEST_F(Cli, StrictBakeRefusesWhatWouldBeAWarning) {
     write_file(here("textured.mtl"), "newmtl m\nmap_Kd gone.png\n");
     write_file(here("textured.obj"), std::string("mtllib textured.mtl\nusemtl m\n") + kTriangle);
     expect_refusal("cw2-bake", 1, {"textured.obj", "--strict"}, {"textured.mtl:2: ", "gone.png"});
+
+    write_file(here("index_uv.obj"), std::string(kTriangle) + "\nf 1/1 2/1 3/1\n");
+    EXPECT_EQ(bake({"index_uv.obj", "-o", "lenient.cw2mesh", "--quiet"}).status, 0);
+    expect_refusal("cw2-bake", 1, {"index_uv.obj", "--strict"}, {"index_uv.obj:6: ", "missing"});
 }
 
 TEST_F(Cli, OutputsThatCannotBeWrittenAreRefused) {

@@ -41,8 +41,8 @@ TEST_F(Limits, ALackOfMemorySaysWhatWasRead) {
     std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     for (int i = 0; i < 3'000'000; ++i) text += "f 1 2 3\n";
     write("many.obj", text);
-    const Outcome outcome = run({"bash", "-c", "ulimit -v 120000; exec \"$0\" \"$@\"", BAKE_PROGRAM,
-                                 "many.obj", "--quiet", "--threads", "1"},
+    const Outcome outcome = run({"/bin/bash", "-c", "ulimit -v 120000; exec \"$0\" \"$@\"",
+                                 BAKE_PROGRAM, "many.obj", "--quiet", "--threads", "1"},
                                 {{}, folder_.path()});
     EXPECT_EQ(outcome.status, 1);
     EXPECT_EQ(outcome.err, "cw2-bake: many.obj: there is not enough memory to read it\n");
