@@ -8,7 +8,7 @@
 
 #include "common/io.h"
 #include "cw2-bake/bake.h"
-#include "cw2-bake/report.h"
+#include "cw2-bake/inspection.h"
 #include "cw2-bake/settings.h"
 #include "mesh-format/file.h"
 

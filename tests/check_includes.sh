@@ -22,6 +22,7 @@ mesh-format/tangent_frame.cpp | common/every_cpu.h
 mesh-format/frame_rotation.h | common/every_cpu.h
 mesh-format/decode.cpp  | meshoptimizer.h zstd.h fmt/* tbb/*
 cw2-bake/*              | common/* mesh-format/* glm/* fmt/* tbb/* CLI/* meshoptimizer.h zstd.h xxhash.h
+cw2-bake/inspection.cpp | nlohmann/json.hpp
 cw2-bake/obj/*          | fast_float/* emmintrin.h
 cw2-bake/gltf/*         | tiny_gltf.h nlohmann/json.hpp
 cw2-bake/gltf/draco_reader.cpp | draco/*
@@ -30,7 +31,7 @@ cw2/*                   | common/* mesh-format/* shaders/interop.h shaders/false
 cw2/render/*            | *.vert.h *.frag.h *.comp.h glslang/* SPIRV/* Imf*.h
 cw2/options/*           | CLI/* toml++/toml.h
 cw2/window/*            | GLFW/* imgui.h backends/imgui_impl_*
-shaders/*               | mesh-format/* shaders/*
+shaders/*               | common/srgb.h mesh-format/* shaders/*
 shaders/*.h             | glm/*
 '
 standard='^([a-z0-9_]+|(dlfcn|fcntl|glob|malloc|unistd|wctype)\.h|sys/[a-z]+\.h)$'
