@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "common/file_kind.h"
-#include "cw2-bake/base/progress.h"
+#include "common/progress.h"
 #include "cw2-bake/geometry/chunks.h"
 #include "cw2-bake/geometry/compress.h"
 #include "cw2-bake/geometry/normals.h"
@@ -75,7 +75,7 @@ TextureSet make_textures(const Settings& settings, const SourceScene& scene, con
     if (settings.textures == TextureMode::none) {
         return {.textures = {}, .materials = std::vector<MaterialTextures>(scene.materials.size())};
     }
-    ProgressBar bar(!settings.quiet);
+    common::ProgressBar bar(!settings.quiet);
     return bake_textures(scene.materials, settings.textures, settings.output, warn,
                          [&bar](double done, std::string_view name) { bar.update(done, name); });
 }

@@ -1,7 +1,6 @@
 #include "cw2/headless.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "common/io.h"
+#include "common/progress.h"
 #include "common/quoted_text.h"
 #include "cw2/options/frame_of.h"
 #include "cw2/render/averager.h"
@@ -140,32 +140,21 @@ class Saver {
     std::future<void> pending_;  ///< destroyed first, which waits
 };
 
-/// How far a run of frames has come, as a line that a terminal shows and overwrites.
-class Progress {
+/// How far a run of frames has come.
+class FrameProgress {
  public:
-    explicit Progress(std::uint32_t count) : count_(count), is_shown_(::isatty(STDERR_FILENO)) {}
-    ~Progress() { clear(); }
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
+    explicit FrameProgress(std::uint32_t count) : count_(count) {}
 
-    /// Nothing before a second, so that what takes no time says nothing.
-    void show(std::uint32_t done) const {
-        if (!is_shown_ || milliseconds() < 1000.0) return;
-        constexpr std::uint32_t kCells = 30;
-        const auto cells = static_cast<int>(std::uint64_t{kCells} * done / count_);
-        fmt::print(stderr, "\r[{:#>{}}{:.>{}}] {}/{}, {:.1f} a second\x1b[K", "", cells, "",
-                   static_cast<int>(kCells) - cells, done, count_,
-                   1000.0 * done / milliseconds_since(start_));
+    void show(std::uint32_t done) {
+        bar_.update(static_cast<double>(done) / count_,
+                    fmt::format("{}/{}, {:.1f} a second", done, count_,
+                                1000.0 * done / milliseconds_since(start_)));
     }
-    void clear() const {
-        if (is_shown_) fmt::print(stderr, "\r\x1b[K");
-    }
-    double milliseconds() const { return milliseconds_since(start_); }
 
  private:
     std::uint32_t count_;
-    bool is_shown_;
     Clock::time_point start_ = Clock::now();
+    common::ProgressBar bar_{true};
 };
 
 std::filesystem::path file_of(const Options& options, std::uint32_t frame) {
@@ -183,7 +172,7 @@ struct Studio {
     void draw_picture(const FrameSettings& settings) {
         Clock::time_point start = Clock::now();
         {
-            const Progress progress(target.samples());
+            FrameProgress progress(target.samples());
             target.render(scene, settings, [&](std::uint32_t frames) { progress.show(frames); });
         }
         timings.first_frame = milliseconds_since(start);
@@ -196,8 +185,9 @@ struct Studio {
 
     void draw_turn(const FrameSettings& settings) {
         const FrameRange& range = *options.frames;
+        const Clock::time_point turn_start = Clock::now();
         Saver saver(options.size, target.png());
-        const Progress progress(range.size());
+        std::optional<FrameProgress> progress(range.size());
         for (std::uint32_t frame = range.first; frame <= range.last; ++frame) {
             const FrameSettings now = at_frame(settings, options.orbit.value_or(Orbit::camera),
                                                frame, range.count, scene.bounds());
@@ -205,12 +195,13 @@ struct Studio {
             target.render(scene, now, [](std::uint32_t) {});
             if (frame == range.first) timings.first_frame = milliseconds_since(start);
             saver.save(file_of(options, frame), target.pixels(), now);
-            progress.show(frame - range.first + 1);
+            progress->show(frame - range.first + 1);
         }
         saver.finish();
-        progress.clear();
-        fmt::print("{} frames in {:.1f} s, {:.2f} a second\n", range.size(),
-                   1e-3 * progress.milliseconds(), 1e3 * range.size() / progress.milliseconds());
+        progress.reset();
+        const double milliseconds = milliseconds_since(turn_start);
+        fmt::print("{} frames in {:.1f} s, {:.2f} a second\n", range.size(), 1e-3 * milliseconds,
+                   1e3 * range.size() / milliseconds);
     }
 
     void measure(const FrameSettings& settings) {

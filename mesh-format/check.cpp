@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "mesh-format/checker.h"
 
@@ -48,8 +49,7 @@ void check_scene(const Checker& check, const SceneRecord& scene) {
     check.require(all_finite(scene.camera_position) && all_finite(scene.camera_target),
                   "the scene's camera is not finite");
     if (scene.flags & kHasCamera) {
-        constexpr float kPi = 3.14159265f;
-        check.require(scene.camera_fov > 0.0f && scene.camera_fov < kPi &&
+        check.require(scene.camera_fov > 0.0f && scene.camera_fov < std::numbers::pi_v<float> &&
                           !std::ranges::equal(scene.camera_position, scene.camera_target),
                       "the scene's camera sees nothing");
     }

@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#include "common/srgb.h"
 #include "shaders/interop.h"
 
 layout(local_size_x = kAverageGroup, local_size_y = kAverageGroup) in;
@@ -10,7 +11,7 @@ layout(set = 0, binding = kBytesBinding, rgba8) uniform writeonly image2D bytes;
 layout(push_constant) uniform Push { AverageConstants average; };
 
 vec3 srgb_of(vec3 x) {
-    return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
+    return vec3(srgb_of_linear(x.r), srgb_of_linear(x.g), srgb_of_linear(x.b));
 }
 
 void main() {

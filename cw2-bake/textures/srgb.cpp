@@ -1,13 +1,12 @@
 #include "cw2-bake/textures/srgb.h"
 
-#include <cmath>
+#include "common/srgb.h"
 
 namespace bake {
 namespace {
 
 float decode(double encoded) {
-    return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92
-                                                 : std::pow((encoded + 0.055) / 1.055, 2.4));
+    return static_cast<float>(common::linear_of_srgb(encoded));
 }
 
 }  // namespace

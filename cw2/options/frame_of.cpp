@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 namespace cw2 {
 
 Options completed(Options options, const SceneStart& start, const Bounds& bounds) {
-    constexpr float kDegreesPerRadian = 180.0f / 3.14159265f;
+    constexpr float kDegreesPerRadian = 180.0f / std::numbers::pi_v<float>;
     if (start.camera && !options.camera_position && !options.camera_target) {
         options.camera_position = to_user(start.camera->position, bounds);
         options.camera_target = to_user(start.camera->target, bounds);
@@ -24,7 +25,7 @@ Options completed(Options options, const SceneStart& start, const Bounds& bounds
 namespace {
 
 Camera start_camera(const Options& options, const Bounds& bounds, float aspect) {
-    constexpr float kRadiansPerDegree = 3.14159265f / 180.0f;
+    constexpr float kRadiansPerDegree = std::numbers::pi_v<float> / 180.0f;
     const float fov = options.vertical_fov.value_or(kVerticalFov) * kRadiansPerDegree;
     Camera camera = options.camera_position
                         ? Camera{from_user(*options.camera_position, bounds), bounds.center, fov}

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <numbers>
 
 namespace cw2 {
 
@@ -64,7 +65,7 @@ std::optional<std::string> frame_name(std::string_view pattern, std::uint32_t fr
 
 FrameSettings at_frame(FrameSettings start, Orbit what, std::uint32_t frame, std::uint32_t count,
                        const Bounds& bounds) {
-    const double angle = 2.0 * 3.14159265358979323846 * frame / count;
+    const double angle = 2.0 * std::numbers::pi * frame / count;
     if (what == Orbit::light) {
         start.light.position = orbit(start.light.position, bounds.center, angle);
     } else {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "common/srgb.h"
 #include "shaders/false_color.h"
 
 namespace cw2 {
@@ -134,9 +135,7 @@ glm::u8vec3 false_color_bytes(float position) {
     glm::u8vec3 bytes;
     for (int i = 0; i < 3; ++i) {
         const float x = std::clamp(linear[i], 0.0f, 1.0f);
-        const float srgb =
-            x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
-        bytes[i] = static_cast<std::uint8_t>(std::lround(255.0f * srgb));
+        bytes[i] = static_cast<std::uint8_t>(std::lround(255.0f * common::srgb_of_linear(x)));
     }
     return bytes;
 }

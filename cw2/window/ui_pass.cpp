@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/srgb.h"
 #include "cw2/vulkan/resources.h"
 
 namespace cw2 {
@@ -58,10 +59,6 @@ Framebuffer make_framebuffer(const Device& device, VkRenderPass pass, VkImageVie
     return {device.get(), framebuffer};
 }
 
-float linear_of(float srgb) {
-    return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
-}
-
 /// Greys and one accent; the target encodes what it is given, so colours are linear.
 void set_style(float scale) {
     ImGui::StyleColorsDark();
@@ -83,7 +80,8 @@ void set_style(float scale) {
         style.Colors[frame] = {0.24f, 0.28f, 0.33f, 1.0f};
     }
     for (ImVec4& color : style.Colors) {
-        color = {linear_of(color.x), linear_of(color.y), linear_of(color.z), color.w};
+        color = {common::linear_of_srgb(color.x), common::linear_of_srgb(color.y),
+                 common::linear_of_srgb(color.z), color.w};
     }
 }
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string_view>
 
-namespace bake {
+namespace common {
 
 /// Draws a bar on standard error once the work has taken a second, if that is a terminal; erases
 /// it when destroyed.
@@ -27,4 +27,4 @@ class ProgressBar {
     Clock::time_point next_draw_;
 };
 
-}  // namespace bake
+}  // namespace common

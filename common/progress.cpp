@@ -1,12 +1,12 @@
-#include "cw2-bake/base/progress.h"
+#include "common/progress.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
 
-namespace bake {
+namespace common {
 
 namespace {
 
@@ -21,17 +21,18 @@ ProgressBar::ProgressBar(bool enabled)
     : enabled_(enabled && ::isatty(STDERR_FILENO) != 0), next_draw_(Clock::now() + kPatience) {}
 
 ProgressBar::~ProgressBar() {
-    if (drawn_) fmt::print(stderr, "\r\033[K");
+    if (drawn_) std::fputs("\r\033[K", stderr);
 }
 
 void ProgressBar::update(double done, std::string_view what) {
     if (!enabled_ || Clock::now() < next_draw_) return;
     next_draw_ = Clock::now() + kInterval;
     drawn_ = true;
-    const int filled = static_cast<int>(std::clamp(done, 0.0, 1.0) * kBarWidth);
-    fmt::print(stderr, "\r\033[K[{:=<{}}{: <{}}] {:3.0f} % {}", "", filled, "", kBarWidth - filled,
-               100.0 * done, what.substr(0, kLabelWidth));
+    std::string bar(kBarWidth, ' ');
+    std::fill_n(bar.begin(), static_cast<int>(std::clamp(done, 0.0, 1.0) * kBarWidth), '=');
+    std::fprintf(stderr, "\r\033[K[%s] %3.0f %% %s", bar.c_str(), 100.0 * done,
+                 std::string(what.substr(0, kLabelWidth)).c_str());
     std::fflush(stderr);
 }
 
-}  // namespace bake
+}  // namespace common
