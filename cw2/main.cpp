@@ -17,9 +17,9 @@ void tell(const char* message) {
 
 int run(const cw2::Options& options) {
     if (options.list_views) {
-        for (cw2::View view = 0; view < cw2::kViewNames.size(); ++view) {
-            std::printf("%-16s %s\n", cw2::kViewNames[view].data(),
-                        cw2::kViewDescriptions[view].data());
+        for (cw2::View view = 0; view < cw2::kViews.size(); ++view) {
+            std::printf("%-16s %s\n", cw2::kViews[view].name.data(),
+                        cw2::kViews[view].description.data());
         }
         return 0;
     }

@@ -109,7 +109,7 @@ class Canvas {
 };
 
 void draw_shaded(Canvas& canvas, int left, const Picture& shaded) {
-    const float exposure = std::exp2(cw2::default_exposure(cw2::interop::kViewShaded));
+    const float exposure = std::exp2(cw2::kViews[cw2::interop::kViewShaded].exposure);
     for (int y = 0; y < shaded.height; ++y) {
         for (int x = 0; x < shaded.width; ++x) {
             const glm::vec4 p =

@@ -34,14 +34,16 @@ struct SceneUniforms {
 CW2_CONSTANT uint kSceneSet = 0;
 CW2_CONSTANT uint kSceneBinding = 0;
 
-// Set 1: the material, bound when it changes, fragment stage only. The opaque pipeline's layout
-// has the first four bindings, the alpha-mask pipeline's all five.
+// Set 1: the material, bound when it changes, fragment stage only. A map's binding is its place
+// in mesh_format::MapUse. The opaque pipelines' layout has the first four, the alpha-mask
+// pipelines' the first five, the emissive pipelines' all of them.
 CW2_CONSTANT uint kMaterialSet = 1;
 CW2_CONSTANT uint kBaseColorBinding = 0;
 CW2_CONSTANT uint kRoughnessBinding = 1;
 CW2_CONSTANT uint kMetalnessBinding = 2;
 CW2_CONSTANT uint kNormalMapBinding = 3;
 CW2_CONSTANT uint kAlphaMaskBinding = 4;
+CW2_CONSTANT uint kEmissionBinding = 5;
 
 // Push constants: what the packed vertices of one mesh need, and its material's factors.
 struct DrawConstants {
@@ -51,6 +53,7 @@ struct DrawConstants {
     vec2 uv_step;
     vec3 base_color;  // linear
     float roughness;
+    vec3 emission;  // 1 is white paper that faces a light of colour 1
     float metalness;
     float alpha_cutoff;
     uint normal_map;     // kNormalMapAbsent...
@@ -67,7 +70,7 @@ struct DisplayConstants {
     uint view;               // what kViewOfDisplay shows
     float lod_bias;          // added to textures' level of detail
 };
-CW2_CONSTANT uint kDisplayOffset = 80;
+CW2_CONSTANT uint kDisplayOffset = 96;
 
 // What add_frame.comp and encode_mean.comp are told; booleans are 0 or 1.
 struct AverageConstants {
@@ -91,6 +94,9 @@ CW2_CONSTANT uint kNormalMapXy = 2;  // z is rebuilt
 CW2_CONSTANT uint kPositionLocation = 0;
 CW2_CONSTANT uint kFrameLocation = 1;
 CW2_CONSTANT uint kUvLocation = 2;
+CW2_CONSTANT uint kColorLocation = 3;  // normalised; where VERTEX_COLORS is defined
+
+CW2_CONSTANT uint kAlphaMaskAbsent = 2;
 
 // Specialisation constants. The forms are mesh_format's enumerations.
 CW2_CONSTANT uint kPositionFormConstant = 0;
@@ -98,11 +104,12 @@ CW2_CONSTANT uint kFrameFormConstant = 1;
 CW2_CONSTANT uint kUvFormConstant = 2;
 CW2_CONSTANT uint kViewConstant = 3;
 CW2_CONSTANT uint kNormalMapConstant = 4;     // 0: the vertex normal shades
-CW2_CONSTANT uint kAlphaMaskConstant = 5;     // 0: nothing is discarded
+CW2_CONSTANT uint kAlphaMaskConstant = 5;     // 0: nothing is discarded; kAlphaMaskAbsent
 CW2_CONSTANT uint kRoughnessMapConstant = 6;  // 0: the factor alone counts
 CW2_CONSTANT uint kMetalnessMapConstant = 7;  // the same
 CW2_CONSTANT uint kFalseColorConstant = 8;    // 0: exposure, else false colour
-CW2_CONSTANT uint kSpecializationCount = 9;
+CW2_CONSTANT uint kUnlitConstant = 9;         // else the base colour is what is seen
+CW2_CONSTANT uint kSpecializationCount = 10;
 
 // What a fragment shows; cw2/render/view.h names them.
 CW2_CONSTANT uint kViewShaded = 0;
@@ -122,17 +129,22 @@ CW2_CONSTANT uint kViewTangent = 13;
 CW2_CONSTANT uint kViewBitangent = 14;
 CW2_CONSTANT uint kViewUv = 15;
 CW2_CONSTANT uint kViewAlphaMask = 16;
-CW2_CONSTANT uint kViewCount = 17;
+CW2_CONSTANT uint kViewEmission = 17;
+CW2_CONSTANT uint kViewVertexColor = 18;
+CW2_CONSTANT uint kViewCount = 19;
 // Further values that can be read, though they make no picture.
-CW2_CONSTANT uint kReadPosition = 17;  // world
-CW2_CONSTANT uint kReadMaterial = 18;  // index
+CW2_CONSTANT uint kReadPosition = kViewCount;      // world
+CW2_CONSTANT uint kReadMaterial = kViewCount + 1;  // index; whether it is unlit
 // What DisplayConstants say, so that one pipeline serves every view.
-CW2_CONSTANT uint kViewOfDisplay = 19;
+CW2_CONSTANT uint kViewOfDisplay = kViewCount + 2;
 
 #ifdef __cplusplus
 static_assert(offsetof(SceneUniforms, cameraPosition) == 192);
 static_assert(offsetof(SceneUniforms, ambientColor) == 240 && sizeof(SceneUniforms) == 256);
-static_assert(offsetof(DrawConstants, base_color) == 32 && sizeof(DrawConstants) == 72);
+static_assert(offsetof(DrawConstants, base_color) == 32 && offsetof(DrawConstants, emission) == 48);
+static_assert(sizeof(DrawConstants) == 84);
+// Vulkan promises no more.
+static_assert(kDisplayOffset + sizeof(DisplayConstants) <= 128);
 static_assert(kDisplayOffset >= sizeof(DrawConstants) && kDisplayOffset % 16 == 0);
 }  // namespace cw2::interop
 #endif

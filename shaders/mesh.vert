@@ -1,7 +1,9 @@
-// Unpacks a vertex into world space; both pipelines share it.
+// Unpacks a vertex into world space; all pipelines share it. With VERTEX_COLORS defined, vertices
+// have a colour.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#include "common/srgb.h"
 #include "shaders/interop.h"
 #include "shaders/tangent_frame.glsl"
 
@@ -15,12 +17,18 @@ layout(push_constant) uniform Draw { DrawConstants draw; };
 layout(location = kPositionLocation) in uvec4 position_words;
 layout(location = kFrameLocation) in uvec4 frame_words;
 layout(location = kUvLocation) in uvec2 uv_words;
+#ifdef VERTEX_COLORS
+layout(location = kColorLocation) in vec4 encoded_color;
+#endif
 
 layout(location = 0) out vec3 world_position;
 layout(location = 1) out vec3 world_normal;
 layout(location = 2) out vec3 world_tangent;
 layout(location = 3) flat out float handedness;
 layout(location = 4) out vec2 uv;
+#ifdef VERTEX_COLORS
+layout(location = 5) out vec4 vertex_color;  // linear
+#endif
 
 void main() {
     // Integers below 2^24 times a power of two: exact, so equal positions stay equal across meshes.
@@ -29,5 +37,9 @@ void main() {
                          : uintBitsToFloat(position_words.xyz);
     uv = uv_form == 0 ? draw.uv_origin + draw.uv_step * vec2(uv_words) : uintBitsToFloat(uv_words);
     decode_frame(frame_form, frame_words, world_tangent, world_normal, handedness);
+#ifdef VERTEX_COLORS
+    vertex_color = vec4(linear_of_srgb(encoded_color.r), linear_of_srgb(encoded_color.g),
+                        linear_of_srgb(encoded_color.b), encoded_color.a);
+#endif
     gl_Position = scene.projCam * vec4(world_position, 1.0);
 }

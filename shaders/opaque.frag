@@ -3,4 +3,4 @@
 
 #include "shaders/shade.glsl"
 
-void main() { color = displayed(view_color(1.0)); }
+void main() { color = displayed(view_color(1.0, vec3(0.0))); }

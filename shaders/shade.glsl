@@ -1,4 +1,5 @@
-// Shades a fragment in world space; the body of both pipelines' fragment shaders.
+// Shades a fragment in world space; the body of all fragment shaders. With
+// VERTEX_COLORS defined, vertices have a colour.
 #include "shaders/brdf.glsl"
 #include "shaders/false_color.h"
 #include "shaders/interop.h"
@@ -8,6 +9,7 @@ layout(constant_id = kNormalMapConstant) const uint use_normal_map = 1;
 layout(constant_id = kRoughnessMapConstant) const uint use_roughness_map = 1;
 layout(constant_id = kMetalnessMapConstant) const uint use_metalness_map = 1;
 layout(constant_id = kFalseColorConstant) const uint use_false_color = 0;
+layout(constant_id = kUnlitConstant) const uint unlit = 0;
 
 layout(set = kSceneSet, binding = kSceneBinding, std140) uniform Scene { SceneUniforms scene; };
 layout(push_constant) uniform Push {
@@ -25,6 +27,11 @@ layout(location = 1) in vec3 world_normal;
 layout(location = 2) in vec3 world_tangent;
 layout(location = 3) flat in float handedness;
 layout(location = 4) in vec2 uv;
+#ifdef VERTEX_COLORS
+layout(location = 5) in vec4 vertex_color;
+#else
+const vec4 vertex_color = vec4(1.0);
+#endif
 
 layout(location = 0) out vec4 color;
 
@@ -46,7 +53,8 @@ vec3 shading_normal() {
 
 Surface surface_at_fragment() {
     Surface surface;
-    surface.base_color = draw.base_color * texture(base_color_map, uv, display.lod_bias).rgb;
+    surface.base_color =
+        draw.base_color * vertex_color.rgb * texture(base_color_map, uv, display.lod_bias).rgb;
     surface.alpha = draw.roughness;
     if (use_roughness_map != 0) surface.alpha *= texture(roughness_map, uv, display.lod_bias).r;
     surface.metalness = draw.metalness;
@@ -58,8 +66,9 @@ Surface surface_at_fragment() {
 // A direction as a colour.
 vec3 as_color(vec3 direction) { return 0.5 * direction + 0.5; }
 
-// The linear value that the chosen view shows; `alpha_mask` is what the mask holds here.
-vec3 view_color(float alpha_mask) {
+// The linear value that the chosen view shows; `alpha_mask` is what the mask holds here, `emission`
+// what is emitted, where white paper that faces a light of colour 1 has 1.
+vec3 view_color(float alpha_mask, vec3 emission) {
     const Surface surface = surface_at_fragment();
     // A light on the surface itself is above that point.
     const vec3 to_light = scene.lightPosition - world_position;
@@ -85,9 +94,12 @@ vec3 view_color(float alpha_mask) {
         case kViewUv: return vec3(fract(uv), 0.0);
         case kViewAlphaMask: return vec3(alpha_mask);
         case kReadPosition: return world_position;
-        case kReadMaterial: return vec3(draw.material);
+        case kViewEmission: return emission;
+        case kViewVertexColor: return vertex_color.rgb;
+        case kReadMaterial: return vec3(draw.material, unlit, 0.0);
     }
-    return scene.ambientColor * surface.base_color +
+    if (unlit != 0) return surface.base_color / kPi;
+    return emission / kPi + scene.ambientColor * surface.base_color +
            scene.lightColor * (brdf.diffuse * brdf.n_dot_l + brdf.specular_n_dot_l);
 }
 

@@ -144,7 +144,7 @@ std::string toml_of(const FalseColor& value) {
     return fmt::format("[{}, {}]", toml_of(value.range->low), toml_of(value.range->high));
 }
 std::string toml_of(const Side& side) {
-    return fmt::format("\"{}{}{}\"", kViewNames[side.view], side.normal_map ? "" : kNoNormalMap,
+    return fmt::format("\"{}{}{}\"", kViews[side.view].name, side.normal_map ? "" : kNoNormalMap,
                        side.alpha_mask ? "" : kNoAlphaMask);
 }
 std::string toml_of(const std::array<Side, 2>& sides) {
@@ -209,7 +209,7 @@ Setting view_setting() {
                 options.view = *view;
                 return std::string();
             },
-            [](const Options& options) { return common::quoted_text(kViewNames[options.view]); }};
+            [](const Options& options) { return common::quoted_text(kViews[options.view].name); }};
 }
 
 Setting background_setting() {

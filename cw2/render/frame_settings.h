@@ -36,7 +36,7 @@ struct FrameSettings : Side {
     Light light{};
     MaterialOverrides materials{};
     std::optional<glm::vec3> background{glm::vec3(0.1f)};  ///< linear; none: transparent
-    /// Stops: values are multiplied by 2^exposure; none: default_exposure() of each side's view.
+    /// Stops: values are multiplied by 2^exposure; none: that of each side's view.
     std::optional<float> exposure;
     std::optional<FalseColor> false_color;  ///< in place of the exposure
     /// One pipeline draws every view, and what interop.h says can be read: for those who want many

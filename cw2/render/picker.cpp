@@ -21,7 +21,8 @@ constexpr std::array kReadings{
     interop::kViewLightDirection, interop::kViewViewDirection, interop::kViewBaseColor,
     interop::kViewRoughness,      interop::kViewMetalness,     interop::kViewDistribution,
     interop::kViewMasking,        interop::kViewFresnel,       interop::kViewDiffuse,
-    interop::kViewSpecular,       interop::kViewShaded};
+    interop::kViewSpecular,       interop::kViewShaded,        interop::kViewEmission,
+    interop::kViewVertexColor};
 using Values = std::array<glm::vec4, kReadings.size()>;
 
 constexpr VkFormat kFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
@@ -43,6 +44,9 @@ Pick pick_of(const Values& values, glm::uvec2 pixel, const Bounds& bounds) {
             .to_light = direction(interop::kViewLightDirection),
             .to_camera = direction(interop::kViewViewDirection),
             .base_color = value(interop::kViewBaseColor),
+            .vertex_color = value(interop::kViewVertexColor),
+            .emission = value(interop::kViewEmission),
+            .unlit = value(interop::kReadMaterial).y != 0.0f,
             .roughness = value(interop::kViewRoughness).x,
             .metalness = value(interop::kViewMetalness).x,
             .distribution = value(interop::kViewDistribution).x,
@@ -83,11 +87,13 @@ float Pick::v_dot_h() const {
 std::string describe(const Pick& pick, const std::string& material) {
     const auto vector = [](const auto& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); };
     return fmt::format(
-        "pixel {},{}: material {}; position {}; normal {}; base color {}; roughness {}; "
-        "metalness {}; n.l {}; n.v {}; n.h {}; v.h {}; D {}; G {}; F {}; diffuse {}; specular {}; "
+        "pixel {},{}: material {}; position {}; normal {}; base color {}{}; vertex color {}; "
+        "emission {}; roughness {}; metalness {}; n.l {}; n.v {}; n.h {}; v.h {}; D {}; G {}; F "
+        "{}; diffuse {}; specular {}; "
         "shaded {}",
         pick.pixel.x, pick.pixel.y, material, vector(pick.position), vector(pick.normal),
-        vector(pick.base_color), pick.roughness, pick.metalness, pick.n_dot_l(), pick.n_dot_v(),
+        vector(pick.base_color), pick.unlit ? " unlit" : "", vector(pick.vertex_color),
+        vector(pick.emission), pick.roughness, pick.metalness, pick.n_dot_l(), pick.n_dot_v(),
         pick.n_dot_h(), pick.v_dot_h(), pick.distribution, pick.masking, vector(pick.fresnel),
         vector(pick.diffuse), vector(pick.specular), vector(pick.shaded));
 }
@@ -111,6 +117,9 @@ std::string json_of(glm::uvec2 pixel, const std::optional<Pick>& pick,
     vector("to_light", pick->to_light);
     vector("to_camera", pick->to_camera);
     vector("base_color", pick->base_color);
+    vector("vertex_color", pick->vertex_color);
+    vector("emission", pick->emission);
+    add("unlit", pick->unlit ? "true" : "false");
     add("roughness", number(pick->roughness));
     add("metalness", number(pick->metalness));
     add("n_dot_l", number(pick->n_dot_l()));

@@ -20,6 +20,9 @@ struct Pick {
     glm::vec3 to_light;
     glm::vec3 to_camera;
     glm::vec3 base_color;
+    glm::vec3 vertex_color;  ///< a factor of the base colour; white where the mesh has none
+    glm::vec3 emission;      ///< 1 is as bright as white paper
+    bool unlit;              ///< the base colour is what is seen
     float roughness;
     float metalness;
     float distribution;  ///< D

@@ -1,16 +1,35 @@
 #include "cw2/render/pipelines.h"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <string>
 #include <vector>
 
 #include "alpha_mask.frag.h"
+#include "alpha_mask_colors.frag.h"
+#include "emissive.frag.h"
+#include "emissive_colors.frag.h"
 #include "mesh.vert.h"
+#include "mesh_colors.vert.h"
 #include "opaque.frag.h"
+#include "opaque_colors.frag.h"
 #include "shaders/interop.h"
 
 namespace cw2 {
 
 namespace {
+
+// A map's binding is its use.
+template <mesh_format::MapUse use, std::uint32_t binding>
+constexpr bool kIsBoundAtUse = static_cast<std::uint32_t>(use) == binding;
+static_assert(kIsBoundAtUse<mesh_format::MapUse::base_color, interop::kBaseColorBinding> &&
+              kIsBoundAtUse<mesh_format::MapUse::roughness, interop::kRoughnessBinding> &&
+              kIsBoundAtUse<mesh_format::MapUse::metalness, interop::kMetalnessBinding> &&
+              kIsBoundAtUse<mesh_format::MapUse::normal, interop::kNormalMapBinding> &&
+              kIsBoundAtUse<mesh_format::MapUse::alpha_mask, interop::kAlphaMaskBinding> &&
+              kIsBoundAtUse<mesh_format::MapUse::emission, interop::kEmissionBinding>);
+static_assert(map_count(Shading::emissive) == mesh_format::kMapUseCount);
 
 DescriptorSetLayout make_set_layout(const Device& device,
                                     std::span<const VkDescriptorSetLayoutBinding> bindings) {
@@ -35,10 +54,7 @@ DescriptorSetLayout make_scene_set_layout(const Device& device) {
 
 DescriptorSetLayout make_material_set_layout(const Device& device, Shading shading) {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
-    for (const std::uint32_t binding :
-         {interop::kBaseColorBinding, interop::kRoughnessBinding, interop::kMetalnessBinding,
-          interop::kNormalMapBinding, interop::kAlphaMaskBinding}) {
-        if (binding == interop::kAlphaMaskBinding && shading == Shading::opaque) continue;
+    for (std::uint32_t binding = 0; binding < map_count(shading); ++binding) {
         bindings.push_back({.binding = binding,
                             .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                             .descriptorCount = 1,
@@ -72,9 +88,13 @@ ShaderModule make_module(const Device& device, std::span<const std::uint32_t> co
     return {device.get(), module};
 }
 
+bool has_colors(const mesh_format::VertexForms& forms) {
+    return forms.color != mesh_format::ColorForm::none;
+}
+
 struct VertexInput {
     VkVertexInputBindingDescription binding;
-    std::array<VkVertexInputAttributeDescription, 3> attributes;
+    std::vector<VkVertexInputAttributeDescription> attributes;
 };
 
 /// Three 16-bit words are read as four, the fourth belonging to what follows in the vertex:
@@ -90,10 +110,24 @@ VertexInput vertex_input(const mesh_format::VertexForms& forms) {
                                                               : VK_FORMAT_R16G16B16A16_UINT;
     const VkFormat uv =
         forms.uv == UvForm::quantised ? VK_FORMAT_R16G16_UINT : VK_FORMAT_R32G32_UINT;
-    return {{.binding = 0, .stride = layout.stride, .inputRate = VK_VERTEX_INPUT_RATE_VERTEX},
-            {{{.location = interop::kPositionLocation, .format = position, .offset = 0},
-              {.location = interop::kFrameLocation, .format = frame, .offset = layout.frame_offset},
-              {.location = interop::kUvLocation, .format = uv, .offset = layout.uv_offset}}}};
+    VertexInput input{
+        {.binding = 0, .stride = layout.stride, .inputRate = VK_VERTEX_INPUT_RATE_VERTEX},
+        {{.location = interop::kPositionLocation, .format = position, .offset = 0},
+         {.location = interop::kFrameLocation, .format = frame, .offset = layout.frame_offset},
+         {.location = interop::kUvLocation, .format = uv, .offset = layout.uv_offset}}};
+    if (has_colors(forms)) {
+        input.attributes.push_back({.location = interop::kColorLocation,
+                                    .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                    .offset = layout.color_offset});
+    }
+    return input;
+}
+
+/// What messages of the validation layers call a pipeline.
+std::string name_of(const PipelineKey& key) {
+    const char* const file = kShaderFiles[1 + static_cast<std::size_t>(key.shading)];
+    return fmt::format("{}{}, {}", file, has_colors(key.forms) ? " with vertex colours" : "",
+                       key.side.view < kViews.size() ? kViews[key.side.view].name : "any view");
 }
 
 /// The values of all specialisation constants, indexed by their id.
@@ -104,39 +138,47 @@ std::array<std::uint32_t, interop::kSpecializationCount> constants_of(const Pipe
     values[interop::kUvFormConstant] = static_cast<std::uint32_t>(key.forms.uv);
     values[interop::kViewConstant] = key.side.view;
     values[interop::kNormalMapConstant] = key.side.normal_map ? 1 : 0;
-    values[interop::kAlphaMaskConstant] = key.side.alpha_mask ? 1 : 0;
+    values[interop::kAlphaMaskConstant] = !key.alpha_mask       ? interop::kAlphaMaskAbsent
+                                          : key.side.alpha_mask ? 1
+                                                                : 0;
     values[interop::kRoughnessMapConstant] = key.roughness_map ? 1 : 0;
     values[interop::kMetalnessMapConstant] = key.metalness_map ? 1 : 0;
     values[interop::kFalseColorConstant] = key.false_color ? 1 : 0;
+    values[interop::kUnlitConstant] = key.unlit ? 1 : 0;
     return values;
 }
 
 }  // namespace
 
-Layouts::Layouts(const Device& device)
-    : scene_set(make_scene_set_layout(device)),
-      opaque_set(make_material_set_layout(device, Shading::opaque)),
-      alpha_mask_set(make_material_set_layout(device, Shading::alpha_mask)),
-      opaque_pipeline(make_pipeline_layout(device, scene_set.get(), opaque_set.get())),
-      alpha_mask_pipeline(make_pipeline_layout(device, scene_set.get(), alpha_mask_set.get())) {}
+Layouts::Layouts(const Device& device) : scene_set(make_scene_set_layout(device)) {
+    for (std::size_t i = 0; i < kShadingCount; ++i) {
+        material_sets[i] = make_material_set_layout(device, static_cast<Shading>(i));
+        pipelines[i] = make_pipeline_layout(device, scene_set.get(), material_sets[i].get());
+    }
+}
 
 ShaderCode built_in_shaders() {
-    return {mesh_vert, opaque_frag, alpha_mask_frag};
+    return {{{mesh_vert, mesh_colors_vert},
+             {opaque_frag, opaque_colors_frag},
+             {alpha_mask_frag, alpha_mask_colors_frag},
+             {emissive_frag, emissive_colors_frag}}};
 }
 
 Pipelines::Pipelines(const Device& device, const Layouts& layouts, const ShaderCode& code,
                      const AttachmentFormats& formats)
-    : device_(&device),
-      layouts_(&layouts),
-      formats_(formats),
-      vertex_(make_module(device, code.vertex)),
-      opaque_fragment_(make_module(device, code.opaque_fragment)),
-      alpha_mask_fragment_(make_module(device, code.alpha_mask_fragment)) {}
+    : device_(&device), layouts_(&layouts), formats_(formats) {
+    for (std::size_t i = 0; i < code.size(); ++i) {
+        for (const bool colors : {false, true}) {
+            modules_[i][colors] = make_module(device, code[i][colors]);
+        }
+    }
+}
 
 VkPipeline Pipelines::get(const PipelineKey& key) {
     const auto [entry, is_new] = pipelines_.try_emplace(key);
     if (is_new) {
         entry->second = build(key);
+        device_->name(entry->second.get(), name_of(key));
         ++built_;
     }
     return entry->second.get();
@@ -158,10 +200,10 @@ Pipeline Pipelines::build(const PipelineKey& key) const {
             .pName = "main",
             .pSpecializationInfo = &specialization};
     };
-    const std::array stages{
-        stage(VK_SHADER_STAGE_VERTEX_BIT, vertex_),
-        stage(VK_SHADER_STAGE_FRAGMENT_BIT,
-              key.shading == Shading::opaque ? opaque_fragment_ : alpha_mask_fragment_)};
+    const bool colors = has_colors(key.forms);
+    const std::array stages{stage(VK_SHADER_STAGE_VERTEX_BIT, modules_[0][colors]),
+                            stage(VK_SHADER_STAGE_FRAGMENT_BIT,
+                                  modules_[1 + static_cast<std::size_t>(key.shading)][colors])};
 
     const VertexInput input = vertex_input(key.forms);
     const VkPipelineVertexInputStateCreateInfo vertex_state{

@@ -3,6 +3,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <array>
 #include <compare>
 #include <map>
 #include <span>
@@ -14,26 +15,43 @@
 
 namespace cw2 {
 
-/// The two pipelines; they differ in their fragment shader and in the layout of set 1.
-enum class Shading { opaque, alpha_mask };
+/// The kinds of pipelines; they differ in their fragment shader and in the layout of set 1.
+enum class Shading {
+    opaque,
+    alpha_mask,
+    emissive,  ///< with or without an alpha mask
+    count
+};
+inline constexpr std::size_t kShadingCount = static_cast<std::size_t>(Shading::count);
 
-/// The three descriptor set layouts (scene, opaque material, alpha-mask material) and the two
-/// pipeline layouts over them.
+/// How many maps the layout of set 1 has: the first ones of mesh_format::MapUse.
+constexpr std::uint32_t map_count(Shading shading) {
+    using mesh_format::MapUse;
+    switch (shading) {
+        case Shading::opaque:
+            return static_cast<std::uint32_t>(MapUse::normal) + 1;
+        case Shading::alpha_mask:
+            return static_cast<std::uint32_t>(MapUse::alpha_mask) + 1;
+        default:
+            return static_cast<std::uint32_t>(MapUse::emission) + 1;
+    }
+}
+
+/// The descriptor set layouts of the scene and of the materials of each shading, and the pipeline
+/// layouts over them.
 struct Layouts {
     explicit Layouts(const Device& device);
 
     VkDescriptorSetLayout material_set(Shading shading) const {
-        return (shading == Shading::opaque ? opaque_set : alpha_mask_set).get();
+        return material_sets[static_cast<std::size_t>(shading)].get();
     }
     VkPipelineLayout pipeline(Shading shading) const {
-        return (shading == Shading::opaque ? opaque_pipeline : alpha_mask_pipeline).get();
+        return pipelines[static_cast<std::size_t>(shading)].get();
     }
 
     DescriptorSetLayout scene_set;
-    DescriptorSetLayout opaque_set;
-    DescriptorSetLayout alpha_mask_set;
-    PipelineLayout opaque_pipeline;
-    PipelineLayout alpha_mask_pipeline;
+    std::array<DescriptorSetLayout, kShadingCount> material_sets;
+    std::array<PipelineLayout, kShadingCount> pipelines;
 };
 
 /// What a pipeline depends on beside the attachments.
@@ -41,18 +59,23 @@ struct PipelineKey {
     Shading shading;
     mesh_format::VertexForms forms;
     Side side;
+    bool alpha_mask;     ///< the material has one
     bool roughness_map;  ///< false: the factor alone counts
     bool metalness_map;  ///< the same
     bool false_color;
+    bool unlit;
     auto operator<=>(const PipelineKey&) const = default;
 };
 
-/// SPIR-V of the three shaders.
-struct ShaderCode {
-    std::span<const std::uint32_t> vertex;
-    std::span<const std::uint32_t> opaque_fragment;
-    std::span<const std::uint32_t> alpha_mask_fragment;
-};
+/// The vertex shader, then the fragment shader of each Shading.
+inline constexpr std::array<const char*, 1 + kShadingCount> kShaderFiles{
+    "mesh.vert", "opaque.frag", "alpha_mask.frag", "emissive.frag"};
+/// One T for each of kShaderFiles, without vertex colours and with them.
+template <typename T>
+using PerShader = std::array<std::array<T, 2>, kShaderFiles.size()>;
+
+/// SPIR-V of the shaders.
+using ShaderCode = PerShader<std::span<const std::uint32_t>>;
 /// The shaders as they were when the executable was built.
 ShaderCode built_in_shaders();
 
@@ -80,9 +103,7 @@ class Pipelines {
     const Device* device_;
     const Layouts* layouts_;
     AttachmentFormats formats_;
-    ShaderModule vertex_;
-    ShaderModule opaque_fragment_;
-    ShaderModule alpha_mask_fragment_;
+    PerShader<ShaderModule> modules_;
     std::map<PipelineKey, Pipeline> pipelines_;
     std::size_t built_ = 0;
 };

@@ -40,7 +40,7 @@ void require_samples(const Device& device, VkFormat format, VkImageUsageFlags us
 }
 
 QueryPool make_timestamps(const Device& device, std::uint32_t count) {
-    if (!device.properties().limits.timestampComputeAndGraphics) return {};
+    if (device.timestamp_bits() == 0) return {};
     const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
                                      .queryType = VK_QUERY_TYPE_TIMESTAMP,
                                      .queryCount = count};
@@ -73,9 +73,11 @@ PipelineKey pipeline_key(const Draw& draw, Side side, const FrameSettings& setti
     return {.shading = draw.shading,
             .forms = draw.forms,
             .side = side,
+            .alpha_mask = draw.alpha_mask,
             .roughness_map = !settings.materials.roughness,
             .metalness_map = !settings.materials.metalness,
-            .false_color = settings.false_color.has_value()};
+            .false_color = settings.false_color.has_value(),
+            .unlit = draw.unlit};
 }
 
 interop::DrawConstants draw_constants(const Draw& draw, const MaterialOverrides& materials) {
@@ -88,7 +90,7 @@ interop::DrawConstants draw_constants(const Draw& draw, const MaterialOverrides&
 
 interop::DisplayConstants display_constants(const Side& side, const FrameTarget& target,
                                             const FrameSettings& settings) {
-    const float stops = settings.exposure.value_or(default_exposure(side.view));
+    const float stops = settings.exposure.value_or(kViews[side.view].exposure);
     interop::DisplayConstants constants{
         .exposure = std::exp2(stops), .view = side.view, .lod_bias = target.sample.lod_bias};
     if (settings.false_color) {
@@ -158,6 +160,7 @@ void Renderer::make_slots(std::uint32_t count) {
         Slot slot;
         slot.uniforms = make_buffer(device_, sizeof(interop::SceneUniforms),
                                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryUse::upload);
+        device_.name(slot.uniforms.handle.get(), fmt::format("scene uniforms {}", i));
         slot.set = allocate_set(device_, descriptor_pool_.get(), layouts_.scene_set.get());
         const VkDescriptorBufferInfo buffer{slot.uniforms.handle.get(), 0, VK_WHOLE_SIZE};
         const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
@@ -183,11 +186,13 @@ void Renderer::resize(VkExtent2D extent) {
                                   .extent = extent,
                                   .samples = formats_.samples,
                                   .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT});
+    device_.name(depth_.handle.get(), "depth");
     if (formats_.samples != VK_SAMPLE_COUNT_1_BIT) {
         multisampled_ = make_image(device_, {.format = formats_.color,
                                              .extent = extent,
                                              .samples = formats_.samples,
                                              .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
+        device_.name(multisampled_.handle.get(), "multisampled colour");
     }
     extent_ = extent;
 }
@@ -249,8 +254,7 @@ void Renderer::draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, c
         if (scissor.extent.width == 0) return;
         vkCmdSetScissor(commands, 0, 1, &scissor);
         const interop::DisplayConstants display = display_constants(side, target, settings);
-        // The two layouts have the same push constants: what is pushed through one is there for
-        // both.
+        // The layouts have the same push constants: what is pushed through one is there for all.
         vkCmdPushConstants(commands, layouts_.pipeline(Shading::opaque), kConstantsStages,
                            interop::kDisplayOffset, sizeof display, &display);
         draw_visible(commands, scene_set, scene, side, settings);
@@ -336,7 +340,7 @@ std::optional<double> Renderer::gpu_milliseconds(std::uint32_t slot) const {
         vkGetQueryPoolResults(device_.get(), timestamps_.get(), 2 * slot, 2, sizeof ticks, ticks,
                               sizeof ticks[0], VK_QUERY_RESULT_64_BIT);
     if (result != VK_SUCCESS) return std::nullopt;
-    return static_cast<double>(ticks[1] - ticks[0]) *
+    return static_cast<double>(elapsed_ticks(ticks[0], ticks[1], device_.timestamp_bits())) *
            static_cast<double>(device_.properties().limits.timestampPeriod) * 1e-6;
 }
 

@@ -26,9 +26,6 @@ using mesh_format::MeshRecord;
 using mesh_format::TextureFormat;
 using mesh_format::TextureRecord;
 
-// Textures share allocations: devices allow as few as 4096 of them.
-constexpr VkDeviceSize kTextureBlockBytes = 64u << 20;
-
 VkFormat vulkan_format(TextureFormat format, bool decoded) {
     switch (format) {
         case TextureFormat::bc1_srgb:
@@ -56,36 +53,6 @@ ImageSettings image_settings(const TextureRecord& record, bool decode_blocks) {
             .extent = {record.width, record.height},
             .mip_count = record.mip_count,
             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-}
-
-/// Binds each image to a part of a few large allocations.
-std::vector<Memory> bind_memory(const Device& device, const std::vector<VkImage>& images) {
-    std::vector<Memory> blocks;
-    VkDeviceSize block_size = 0;
-    VkDeviceSize used = 0;
-    std::uint32_t block_type = 0;
-    for (const VkImage image : images) {
-        VkMemoryRequirements needs;
-        vkGetImageMemoryRequirements(device.get(), image, &needs);
-        used = (used + needs.alignment - 1) / needs.alignment * needs.alignment;
-        if (blocks.empty() || used + needs.size > block_size ||
-            !(needs.memoryTypeBits & (1u << block_type))) {
-            block_size = std::max(kTextureBlockBytes, needs.size);
-            block_type =
-                device.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-            used = 0;
-            const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                            .allocationSize = block_size,
-                                            .memoryTypeIndex = block_type};
-            VkDeviceMemory memory = VK_NULL_HANDLE;
-            check(vkAllocateMemory(device.get(), &info, nullptr, &memory), "vkAllocateMemory");
-            blocks.emplace_back(device.get(), memory, block_size);
-        }
-        check(vkBindImageMemory(device.get(), image, blocks.back().get(), used),
-              "vkBindImageMemory");
-        used += needs.size;
-    }
-    return blocks;
 }
 
 std::vector<std::span<const std::byte>> levels_of(const TextureRecord& record,
@@ -118,6 +85,7 @@ Sampler make_sampler(const Device& device, VkSamplerAddressMode mode, float anis
 }
 
 Shading shading_of(const MaterialRecord& material) {
+    if (glm::make_vec3(material.emission) != glm::vec3(0.0f)) return Shading::emissive;
     return material.flags & mesh_format::kAlphaMask ? Shading::alpha_mask : Shading::opaque;
 }
 
@@ -137,6 +105,7 @@ interop::DrawConstants constants_of(const Document& document, const MeshRecord& 
     constants.uv_origin = glm::make_vec2(mesh.uv_origin);
     constants.uv_step = glm::make_vec2(mesh.uv_step);
     constants.base_color = glm::make_vec3(material.base_color);
+    constants.emission = glm::make_vec3(material.emission);
     constants.roughness = material.roughness;
     constants.metalness = material.metalness;
     constants.alpha_cutoff = material.alpha_cutoff;
@@ -169,6 +138,8 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
         upload_buffer(device, uploader, document.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
     indices_ = upload_buffer(device, uploader, std::as_bytes(document.indices),
                              VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    device.name(vertices_.handle.get(), "scene vertices");
+    device.name(indices_.handle.get(), "scene indices");
     upload_textures(device, document, settings.decode_blocks, uploader);
     uploader.finish();
 
@@ -190,6 +161,8 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
         draws_.push_back({.constants = constants_of(document, mesh, material),
                           .forms = mesh.forms,
                           .shading = shading_of(material),
+                          .alpha_mask = (material.flags & mesh_format::kAlphaMask) != 0,
+                          .unlit = (material.flags & mesh_format::kUnlit) != 0,
                           .cull_back = (material.flags & mesh_format::kCullBack) != 0,
                           .material = sets[mesh.material],
                           .vertex_offset = mesh.vertex_offset,
@@ -209,10 +182,12 @@ void Scene::upload_textures(const Device& device, const Document& document, bool
             {.image = make_image_handle(device, image_settings(record, decode_blocks)),
              .clamp = (record.flags & mesh_format::kClampToEdge) != 0});
         images.push_back(textures_.back().image.get());
+        device.name(images.back(), fmt::format("texture {}", document.text(record.name)));
     };
     for (const TextureRecord& record : document.textures) add(record);
     add(kWhiteTexel);
-    texture_memory_ = bind_memory(device, images);
+    device.name(images.back(), "white texel");
+    texture_memory_ = bind_images(device, images);
 
     std::vector<std::byte> decoded;
     const auto upload = [&](std::size_t i, const TextureRecord& record,
@@ -241,11 +216,12 @@ std::vector<VkDescriptorSet> Scene::make_material_sets(const Device& device, con
                                                        const Document& document) {
     const auto set_count = static_cast<std::uint32_t>(document.materials.size());
     descriptor_pool_ = make_descriptor_pool(device, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                            5 * set_count, set_count);
+                                            mesh_format::kMapUseCount * set_count, set_count);
     std::vector<VkDescriptorSet> sets;
     for (const MaterialRecord& material : document.materials) {
         const VkDescriptorSet set = allocate_set(device, descriptor_pool_.get(),
                                                  layouts.material_set(shading_of(material)));
+        device.name(set, fmt::format("material {}", document.text(material.name)));
         write_material_set(device, set, material);
         sets.push_back(set);
     }
@@ -254,30 +230,23 @@ std::vector<VkDescriptorSet> Scene::make_material_sets(const Device& device, con
 
 void Scene::write_material_set(const Device& device, VkDescriptorSet set,
                                const MaterialRecord& material) const {
-    const std::array<std::pair<std::uint32_t, std::uint32_t>, 5> bindings{
-        {{interop::kBaseColorBinding, material.textures[MapUse::base_color]},
-         {interop::kRoughnessBinding, material.textures[MapUse::roughness]},
-         {interop::kMetalnessBinding, material.textures[MapUse::metalness]},
-         {interop::kNormalMapBinding, material.textures[MapUse::normal]},
-         {interop::kAlphaMaskBinding, material.textures[MapUse::alpha_mask]}}};
-    const std::size_t count = shading_of(material) == Shading::opaque ? 4 : 5;
-    std::array<VkDescriptorImageInfo, 5> images;
-    std::array<VkWriteDescriptorSet, 5> writes;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto [binding, index] = bindings[i];
+    std::array<VkDescriptorImageInfo, mesh_format::kMapUseCount> images;
+    std::array<VkWriteDescriptorSet, mesh_format::kMapUseCount> writes;
+    const std::uint32_t count = map_count(shading_of(material));
+    for (std::uint32_t use = 0; use < count; ++use) {
+        const std::uint32_t index = material.textures.values[use];
         const Texture& texture =
             index == mesh_format::kNoTexture ? textures_.back() : textures_[index];
-        images[i] = {texture.clamp ? clamp_.get() : repeat_.get(), texture.view.get(),
-                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-        writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                     .dstSet = set,
-                     .dstBinding = binding,
-                     .descriptorCount = 1,
-                     .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                     .pImageInfo = &images[i]};
+        images[use] = {texture.clamp ? clamp_.get() : repeat_.get(), texture.view.get(),
+                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        writes[use] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                       .dstSet = set,
+                       .dstBinding = use,
+                       .descriptorCount = 1,
+                       .descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                       .pImageInfo = &images[use]};
     }
-    vkUpdateDescriptorSets(device.get(), static_cast<std::uint32_t>(count), writes.data(), 0,
-                           nullptr);
+    vkUpdateDescriptorSets(device.get(), count, writes.data(), 0, nullptr);
 }
 
 VkDeviceSize Scene::memory_bytes() const {

@@ -24,6 +24,8 @@ struct Draw {
     interop::DrawConstants constants;
     mesh_format::VertexForms forms;
     Shading shading;
+    bool alpha_mask;  ///< the material has one
+    bool unlit;
     bool cull_back;
     VkDescriptorSet material;
     VkDeviceSize vertex_offset;  ///< bytes

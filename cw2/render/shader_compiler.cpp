@@ -61,8 +61,9 @@ std::string first_error(std::string_view log, const std::filesystem::path& path)
     return log.starts_with('/') ? std::string(log) : fmt::format("{}: {}", path.string(), log);
 }
 
-std::vector<std::uint32_t> compile(const std::filesystem::path& root, const char* file,
-                                   EShLanguage stage) {
+std::vector<std::uint32_t> compile(const std::filesystem::path& root, const std::string& file,
+                                   bool vertex_colors) {
+    const EShLanguage stage = file.ends_with(".vert") ? EShLangVertex : EShLangFragment;
     const std::filesystem::path path = root / "shaders" / file;
     const std::string text = read_text(path);
     const std::string name = path.string();
@@ -73,6 +74,7 @@ std::vector<std::uint32_t> compile(const std::filesystem::path& root, const char
 
     glslang::TShader shader(stage);
     shader.setStringsWithLengthsAndNames(&text_data, &length, &name_data, 1);
+    if (vertex_colors) shader.setPreamble("#define VERTEX_COLORS\n");
     shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
@@ -92,9 +94,13 @@ std::vector<std::uint32_t> compile(const std::filesystem::path& root, const char
 
 CompiledShaders compile_shaders(const std::filesystem::path& root) {
     const GlslangProcess process;
-    return {compile(root, "mesh.vert", EShLangVertex),
-            compile(root, "opaque.frag", EShLangFragment),
-            compile(root, "alpha_mask.frag", EShLangFragment)};
+    CompiledShaders shaders;
+    for (std::size_t i = 0; i < kShaderFiles.size(); ++i) {
+        for (const bool vertex_colors : {false, true}) {
+            shaders.words[i][vertex_colors] = compile(root, kShaderFiles[i], vertex_colors);
+        }
+    }
+    return shaders;
 }
 
 }  // namespace cw2

@@ -15,13 +15,17 @@ class ShaderError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// SPIR-V of the three shaders.
+/// SPIR-V of the shaders.
 struct CompiledShaders {
-    std::vector<std::uint32_t> vertex;
-    std::vector<std::uint32_t> opaque_fragment;
-    std::vector<std::uint32_t> alpha_mask_fragment;
+    PerShader<std::vector<std::uint32_t>> words;
 
-    ShaderCode code() const { return {vertex, opaque_fragment, alpha_mask_fragment}; }
+    ShaderCode code() const {
+        ShaderCode code;
+        for (std::size_t i = 0; i < code.size(); ++i) {
+            code[i] = {words[i][false], words[i][true]};
+        }
+        return code;
+    }
 };
 
 /// Compiles the shaders of `root`/shaders, as the build does; `root` is where their includes are

@@ -14,34 +14,6 @@ namespace cw2 {
 /// One of interop's kView constants.
 using View = std::uint32_t;
 
-/// Names as the command line has them, indexed by View.
-inline constexpr std::array<std::string_view, interop::kViewCount> kViewNames{
-    "shaded",     "normal",    "vertex-normal", "view-direction", "light-direction",
-    "diffuse",    "specular",  "distribution",  "masking",        "fresnel",
-    "base-color", "roughness", "metalness",     "tangent",        "bitangent",
-    "uv",         "alpha-mask"};
-
-/// One line on what each view shows, for --list-views and the README.
-inline constexpr std::array<std::string_view, interop::kViewCount> kViewDescriptions{
-    "the picture: ambient, diffuse and specular light",
-    "shading normal, normal map applied, as 0.5 n + 0.5",
-    "interpolated vertex normal as 0.5 n + 0.5",
-    "direction to the camera as 0.5 v + 0.5",
-    "direction to the light as 0.5 l + 0.5",
-    "Lambert term before light colour and n.l",
-    "specular term D F G / (4 n.v n.l), before light colour and n.l",
-    "D, the Blinn-Phong distribution of microfacet normals",
-    "G, shadowing and masking between microfacets",
-    "F, Fresnel reflectance after Schlick",
-    "base colour, linear",
-    "roughness",
-    "metalness",
-    "interpolated tangent as 0.5 t + 0.5",
-    "bitangent, handedness applied, as 0.5 b + 0.5",
-    "fractional part of the texture coordinate",
-    "alpha mask; 1 where a material has none",
-};
-
 /// Values that false colour spreads its colours over: by their logarithm if low is positive, else
 /// evenly. high > low.
 struct ValueRange {
@@ -50,39 +22,65 @@ struct ValueRange {
     bool operator==(const ValueRange&) const = default;
 };
 
-/// The range that shows a view well, indexed by View.
-inline constexpr std::array<ValueRange, interop::kViewCount> kViewRanges{{
-    {0.001f, 10.0f},   // shaded
-    {0.0f, 1.0f},      // normal
-    {0.0f, 1.0f},      // vertex-normal
-    {0.0f, 1.0f},      // view-direction
-    {0.0f, 1.0f},      // light-direction
-    {0.0f, 0.32f},     // diffuse: at most 1 / pi
-    {0.001f, 100.0f},  // specular
-    {0.01f, 1e4f},     // distribution
-    {0.0f, 1.0f},      // masking
-    {0.0f, 1.0f},      // fresnel
-    {0.0f, 1.0f},      // base-color
-    {0.0f, 1.0f},      // roughness
-    {0.0f, 1.0f},      // metalness
-    {0.0f, 1.0f},      // tangent
-    {0.0f, 1.0f},      // bitangent
-    {0.0f, 1.0f},      // uv
-    {0.0f, 1.0f},      // alpha-mask
-}};
+/// What is known of a view beside how it is computed, which shaders/shade.glsl says.
+struct ViewInfo {
+    View view;
+    std::string_view name;         ///< as the command line has it
+    std::string_view description;  ///< one line, for --list-views and the panel
+    ValueRange range{0.0f, 1.0f};  ///< that shows it well in false colours
+    /// Stops by which what people look at is brightened where nobody asks for others: log2(pi) for
+    /// the picture, so that white paper that faces the light is white.
+    float exposure = 0.0f;
+};
 
-/// Stops by which what people look at is brightened where nobody asks for others: log2(pi) for the
-/// picture, so that white paper that faces the light is white.
-constexpr float default_exposure(View view) {
-    return view == interop::kViewShaded ? 1.6514961f : 0.0f;
-}
+/// Indexed by View.
+inline constexpr std::array<ViewInfo, interop::kViewCount> kViews{{
+    {interop::kViewShaded,
+     "shaded",
+     "the picture: ambient, diffuse and specular light, emission",
+     {0.001f, 10.0f},
+     1.6514961f},
+    {interop::kViewNormal, "normal", "shading normal, normal map applied, as 0.5 n + 0.5"},
+    {interop::kViewVertexNormal, "vertex-normal", "interpolated vertex normal as 0.5 n + 0.5"},
+    {interop::kViewViewDirection, "view-direction", "direction to the camera as 0.5 v + 0.5"},
+    {interop::kViewLightDirection, "light-direction", "direction to the light as 0.5 l + 0.5"},
+    {interop::kViewDiffuse,
+     "diffuse",
+     "Lambert term before light colour and n.l",
+     {0.0f, 0.32f}},  // at most 1 / pi
+    {interop::kViewSpecular,
+     "specular",
+     "specular term D F G / (4 n.v n.l), before light colour and n.l",
+     {0.001f, 100.0f}},
+    {interop::kViewDistribution,
+     "distribution",
+     "D, the Blinn-Phong distribution of microfacet normals",
+     {0.01f, 1e4f}},
+    {interop::kViewMasking, "masking", "G, shadowing and masking between microfacets"},
+    {interop::kViewFresnel, "fresnel", "F, Fresnel reflectance after Schlick"},
+    {interop::kViewBaseColor, "base-color", "base colour, linear"},
+    {interop::kViewRoughness, "roughness", "roughness"},
+    {interop::kViewMetalness, "metalness", "metalness"},
+    {interop::kViewTangent, "tangent", "interpolated tangent as 0.5 t + 0.5"},
+    {interop::kViewBitangent, "bitangent", "bitangent, handedness applied, as 0.5 b + 0.5"},
+    {interop::kViewUv, "uv", "fractional part of the texture coordinate"},
+    {interop::kViewAlphaMask, "alpha-mask", "alpha mask; 1 where a material has none"},
+    {interop::kViewEmission, "emission", "what is emitted, linear; 1 is as bright as white paper"},
+    {interop::kViewVertexColor, "vertex-color", "interpolated vertex colour, linear; else white"},
+}};
+static_assert([] {
+    for (View view = 0; view < kViews.size(); ++view) {
+        if (kViews[view].view != view) return false;
+    }
+    return true;
+}());
 
 /// That a view is to be shown in false colours.
 struct FalseColor {
     std::optional<ValueRange> range;  ///< none: the view's own
     bool operator==(const FalseColor&) const = default;
 
-    ValueRange range_of(View view) const { return range.value_or(kViewRanges[view]); }
+    ValueRange range_of(View view) const { return range.value_or(kViews[view].range); }
 };
 
 /// What one side of a picture shows.
@@ -94,8 +92,8 @@ struct Side {
 };
 
 inline std::optional<View> view_named(std::string_view name) {
-    for (View view = 0; view < kViewNames.size(); ++view) {
-        if (kViewNames[view] == name) return view;
+    for (View view = 0; view < kViews.size(); ++view) {
+        if (kViews[view].name == name) return view;
     }
     return std::nullopt;
 }

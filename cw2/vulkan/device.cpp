@@ -37,6 +37,12 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(int* count) {
     return info;
 }
 
+bool contains(const std::vector<VkExtensionProperties>& extensions, const char* name) {
+    return std::any_of(extensions.begin(), extensions.end(), [name](const auto& extension) {
+        return std::strcmp(extension.extensionName, name) == 0;
+    });
+}
+
 bool has_validation_layer() {
     std::uint32_t count = 0;
     vkEnumerateInstanceLayerProperties(&count, nullptr);
@@ -45,6 +51,15 @@ bool has_validation_layer() {
     return std::any_of(layers.begin(), layers.end(), [](const VkLayerProperties& layer) {
         return std::strcmp(layer.layerName, kValidationLayer) == 0;
     });
+}
+
+/// Whether the validation layer has an instance extension.
+bool validation_has_extension(const char* name) {
+    std::uint32_t count = 0;
+    vkEnumerateInstanceExtensionProperties(kValidationLayer, &count, nullptr);
+    std::vector<VkExtensionProperties> extensions(count);
+    vkEnumerateInstanceExtensionProperties(kValidationLayer, &count, extensions.data());
+    return contains(extensions, name);
 }
 
 std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
@@ -62,13 +77,18 @@ VkPhysicalDeviceProperties properties_of(VkPhysicalDevice physical) {
     return properties;
 }
 
-/// A queue family for graphics and compute that can present to `surface` if there is one.
-std::optional<std::uint32_t> queue_family_of(VkPhysicalDevice physical, VkSurfaceKHR surface) {
+std::vector<VkQueueFamilyProperties> queue_families_of(VkPhysicalDevice physical) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
-    for (std::uint32_t i = 0; i < count; ++i) {
+    return families;
+}
+
+/// A queue family for graphics and compute that can present to `surface` if there is one.
+std::optional<std::uint32_t> queue_family_of(VkPhysicalDevice physical, VkSurfaceKHR surface) {
+    const std::vector<VkQueueFamilyProperties> families = queue_families_of(physical);
+    for (std::uint32_t i = 0; i < families.size(); ++i) {
         constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
         if ((families[i].queueFlags & kNeeded) != kNeeded) continue;
         VkBool32 presents = VK_TRUE;
@@ -81,15 +101,27 @@ std::optional<std::uint32_t> queue_family_of(VkPhysicalDevice physical, VkSurfac
     return std::nullopt;
 }
 
+std::uint32_t timestamp_bits_of(VkPhysicalDevice physical, std::uint32_t family) {
+    return queue_families_of(physical)[family].timestampValidBits;
+}
+
 bool has_extension(VkPhysicalDevice physical, const char* name) {
     std::uint32_t count = 0;
     vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr);
     std::vector<VkExtensionProperties> extensions(count);
     vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data());
-    return std::any_of(extensions.begin(), extensions.end(), [name](const auto& extension) {
-        return std::strcmp(extension.extensionName, name) == 0;
-    });
+    return contains(extensions, name);
 }
+
+/// The features that cw2 needs; what a device lacks and what is enabled both follow from this.
+struct RequiredFeature {
+    const char* name;
+    VkBool32 VkPhysicalDeviceVulkan13Features::*feature;
+};
+constexpr RequiredFeature kRequiredFeatures[] = {
+    {"dynamic rendering", &VkPhysicalDeviceVulkan13Features::dynamicRendering},
+    {"synchronization2", &VkPhysicalDeviceVulkan13Features::synchronization2},
+};
 
 /// What the device lacks for cw2, or an empty string.
 std::string missing_feature(VkPhysicalDevice physical, VkSurfaceKHR surface) {
@@ -100,8 +132,9 @@ std::string missing_feature(VkPhysicalDevice physical, VkSurfaceKHR surface) {
     VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                        .pNext = &features13};
     vkGetPhysicalDeviceFeatures2(physical, &features);
-    if (!features13.dynamicRendering) return "no dynamic rendering";
-    if (!features13.synchronization2) return "no synchronization2";
+    for (const RequiredFeature& required : kRequiredFeatures) {
+        if (!(features13.*required.feature)) return fmt::format("no {}", required.name);
+    }
     if (!queue_family_of(physical, surface)) {
         return surface == VK_NULL_HANDLE ? "no graphics queue" : "no queue that presents";
     }
@@ -234,6 +267,9 @@ Instance::Instance(bool validation, const std::vector<const char*>& extensions) 
     }
     std::vector<const char*> enabled = extensions;
     if (validation) enabled.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    const bool validates_more =
+        validation && validation_has_extension(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
+    if (validates_more) enabled.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
 
     VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(message_count_.get());
     const VkValidationFeatureEnableEXT synchronisation =
@@ -250,7 +286,7 @@ Instance::Instance(bool validation, const std::vector<const char*>& extensions) 
     info.enabledExtensionCount = static_cast<std::uint32_t>(enabled.size());
     info.ppEnabledExtensionNames = enabled.data();
     if (validation) {
-        info.pNext = &features;
+        info.pNext = validates_more ? static_cast<const void*>(&features) : &messenger;
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = &kValidationLayer;
     }
@@ -266,6 +302,8 @@ Instance::Instance(bool validation, const std::vector<const char*>& extensions) 
     VkDebugUtilsMessengerEXT handle = VK_NULL_HANDLE;
     check(create(instance, &messenger, nullptr, &handle), "vkCreateDebugUtilsMessengerEXT");
     messenger_ = DebugMessenger(instance, handle, messenger_destroyer(instance));
+    set_object_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
+        vkGetInstanceProcAddr(instance, "vkSetDebugUtilsObjectNameEXT"));
 }
 
 std::vector<std::string> describe_devices(const Instance& instance) {
@@ -291,6 +329,8 @@ Device::Device(const Instance& instance, const std::optional<std::string>& selec
     properties_ = properties_of(physical_);
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
     queue_family_ = *queue_family_of(physical_, surface);
+    timestamp_bits_ = timestamp_bits_of(physical_, queue_family_);
+    set_object_name_ = instance.set_object_name();
 
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -301,8 +341,9 @@ Device::Device(const Instance& instance, const std::optional<std::string>& selec
     vkGetPhysicalDeviceFeatures(physical_, &supported);
     VkPhysicalDeviceVulkan13Features features13{
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-    features13.dynamicRendering = VK_TRUE;
-    features13.synchronization2 = VK_TRUE;
+    for (const RequiredFeature& required : kRequiredFeatures) {
+        features13.*required.feature = VK_TRUE;
+    }
     VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
                                        .pNext = &features13};
     features.features.samplerAnisotropy = supported.samplerAnisotropy;
@@ -323,6 +364,19 @@ Device::Device(const Instance& instance, const std::optional<std::string>& selec
     vkGetDeviceQueue(device, queue_family_, 0, &queue_);
     // Without the feature no sampler may ask for anisotropy.
     if (!supported.samplerAnisotropy) properties_.limits.maxSamplerAnisotropy = 1.0f;
+}
+
+std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, std::uint32_t valid_bits) {
+    return (end - begin) & (~std::uint64_t{0} >> (64 - valid_bits));
+}
+
+void Device::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const {
+    const VkDebugUtilsObjectNameInfoEXT info{
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+        .objectType = type,
+        .objectHandle = handle,
+        .pObjectName = name.c_str()};
+    check(set_object_name_(device_.get(), &info), "vkSetDebugUtilsObjectNameEXT");
 }
 
 std::uint32_t Device::memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags flags) const {

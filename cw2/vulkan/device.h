@@ -33,12 +33,31 @@ class Instance {
     VkInstance get() const { return instance_.get(); }
     /// Warnings and errors of the validation layers so far.
     int validation_messages() const { return *message_count_; }
+    /// Null without validation.
+    PFN_vkSetDebugUtilsObjectNameEXT set_object_name() const { return set_object_name_; }
 
  private:
     std::unique_ptr<int> message_count_ = std::make_unique<int>(0);
     InstanceHandle instance_;
     DebugMessenger messenger_;
+    PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;
 };
+
+/// The object types that messages of the validation layers name.
+template <typename Handle>
+constexpr VkObjectType kObjectType = VK_OBJECT_TYPE_UNKNOWN;
+template <>
+inline constexpr VkObjectType kObjectType<VkBuffer> = VK_OBJECT_TYPE_BUFFER;
+template <>
+inline constexpr VkObjectType kObjectType<VkImage> = VK_OBJECT_TYPE_IMAGE;
+template <>
+inline constexpr VkObjectType kObjectType<VkPipeline> = VK_OBJECT_TYPE_PIPELINE;
+template <>
+inline constexpr VkObjectType kObjectType<VkDescriptorSet> = VK_OBJECT_TYPE_DESCRIPTOR_SET;
+
+/// Between two timestamps of which that many bits count, in [1, 64]: they start again at 0 at most
+/// once.
+std::uint64_t elapsed_ticks(std::uint64_t begin, std::uint64_t end, std::uint32_t valid_bits);
 
 /// A line for each physical device: index, name, kind, Vulkan version, and whether cw2 can use it.
 std::vector<std::string> describe_devices(const Instance& instance);
@@ -62,15 +81,30 @@ class Device {
     bool samples_blocks() const { return samples_blocks_; }
     bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
 
+    /// How many bits of a timestamp count on the queue; 0 where it has none.
+    std::uint32_t timestamp_bits() const { return timestamp_bits_; }
+
+    /// Names an object for the validation layers, if they are on.
+    template <typename Handle>
+    void name(Handle handle, const std::string& name) const {
+        static_assert(kObjectType<Handle> != VK_OBJECT_TYPE_UNKNOWN);
+        if (set_object_name_ == nullptr) return;
+        set_name(kObjectType<Handle>, reinterpret_cast<std::uint64_t>(handle), name);
+    }
+
     /// The index of a memory type among `type_bits` that has `flags`, or else throws VulkanError.
     std::uint32_t memory_type(std::uint32_t type_bits, VkMemoryPropertyFlags flags) const;
 
  private:
+    void set_name(VkObjectType type, std::uint64_t handle, const std::string& name) const;
+
     VkPhysicalDevice physical_ = VK_NULL_HANDLE;
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceMemoryProperties memory_{};
     std::uint32_t queue_family_ = 0;
+    std::uint32_t timestamp_bits_ = 0;
     bool samples_blocks_ = false;
+    PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;
     LogicalDevice device_;
     VkQueue queue_ = VK_NULL_HANDLE;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "mesh-format/layout.h"
 
@@ -9,6 +10,8 @@ namespace cw2 {
 
 namespace {
 
+/// What images that share an allocation take together, at most, unless one alone is larger.
+constexpr VkDeviceSize kSharedMemoryBytes = 64u << 20;
 constexpr VkDeviceSize kStagingBytes = 32u << 20;
 // Suits every block size and vkCmdCopyBufferToImage's rule of 4.
 constexpr VkDeviceSize kStagingAlignment = 16;
@@ -69,6 +72,35 @@ Buffer make_buffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags u
         buffer.mapped = {static_cast<std::byte*>(address), size};
     }
     return buffer;
+}
+
+std::vector<Memory> bind_images(const Device& device, std::span<const VkImage> images) {
+    std::vector<VkMemoryRequirements> blocks;
+    std::vector<std::pair<std::size_t, VkDeviceSize>> places;  ///< of the images: block and offset
+    for (const VkImage image : images) {
+        VkMemoryRequirements needs;
+        vkGetImageMemoryRequirements(device.get(), image, &needs);
+        const auto offset = [&] {
+            return (blocks.back().size + needs.alignment - 1) / needs.alignment * needs.alignment;
+        };
+        if (blocks.empty() || blocks.back().memoryTypeBits != needs.memoryTypeBits ||
+            offset() + needs.size > kSharedMemoryBytes) {
+            blocks.push_back({0, needs.alignment, needs.memoryTypeBits});
+        }
+        places.emplace_back(blocks.size() - 1, offset());
+        blocks.back().size = places.back().second + needs.size;
+        blocks.back().alignment = std::max(blocks.back().alignment, needs.alignment);
+    }
+    std::vector<Memory> memory;
+    for (const VkMemoryRequirements& needs : blocks) {
+        memory.push_back(allocate(device, needs, MemoryUse::device));
+    }
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        const auto [block, offset] = places[i];
+        check(vkBindImageMemory(device.get(), images[i], memory[block].get(), offset),
+              "vkBindImageMemory");
+    }
+    return memory;
 }
 
 ImageHandle make_image_handle(const Device& device, const ImageSettings& settings) {

@@ -48,6 +48,10 @@ struct ImageSettings {
 /// An image and its memory. Throws VulkanError.
 Image make_image(const Device& device, const ImageSettings& settings);
 
+/// Binds images to a few allocations, which must outlive their use, each shared by images that
+/// follow each other: devices allow as few as 4096 allocations. Throws VulkanError.
+std::vector<Memory> bind_images(const Device& device, std::span<const VkImage> images);
+
 /// An image without memory or view.
 ImageHandle make_image_handle(const Device& device, const ImageSettings& settings);
 ImageView make_image_view(const Device& device, VkImage image, const ImageSettings& settings);

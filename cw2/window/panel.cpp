@@ -55,11 +55,11 @@ void color(const char* name, const char* id, glm::vec3& value) {
 }
 
 void view_combo(const char* id, View& shown) {
-    if (!ImGui::BeginCombo(id, kViewNames[shown].data(), ImGuiComboFlags_HeightLargest)) return;
-    for (View view = 0; view < kViewNames.size(); ++view) {
-        if (ImGui::Selectable(kViewNames[view].data(), view == shown)) shown = view;
+    if (!ImGui::BeginCombo(id, kViews[shown].name.data(), ImGuiComboFlags_HeightLargest)) return;
+    for (View view = 0; view < kViews.size(); ++view) {
+        if (ImGui::Selectable(kViews[view].name.data(), view == shown)) shown = view;
         ImGui::SameLine(9.0f * ImGui::GetFontSize());
-        ImGui::TextDisabled("%s", kViewDescriptions[view].data());
+        ImGui::TextDisabled("%s", kViews[view].description.data());
     }
     ImGui::EndCombo();
 }
@@ -109,7 +109,7 @@ void view_section(Options& options) {
     if (!options.split) {
         label("shows");
         view_combo("##view", options.view);
-        dim_text(std::string(kViewDescriptions[options.view]));
+        dim_text(std::string(kViews[options.view].description));
     }
     split_rows(options);
     label("samples");
@@ -164,7 +164,7 @@ void false_color_rows(Options& options) {
     ImGui::SameLine();
     bool own = !range;
     if (ImGui::Checkbox("range of the view", &own)) {
-        range = own ? std::nullopt : std::optional(kViewRanges[view]);
+        range = own ? std::nullopt : std::optional(kViews[view].range);
     }
     const ValueRange shown = options.false_color->range_of(view);
     if (range) {
@@ -186,16 +186,16 @@ void exposure_row(Options& options) {
     const View view = options.split ? options.split->front().view : options.view;
     bool own = !options.exposure;
     if (ImGui::Checkbox("of the view##exposure", &own)) {
-        options.exposure = own ? std::nullopt : std::optional(default_exposure(view));
+        options.exposure = own ? std::nullopt : std::optional(kViews[view].exposure);
     }
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0f);
     if (options.exposure) {
         ImGui::SliderFloat("##exposure", &*options.exposure, -10.0f, 10.0f, "%+.1f stops", kClamp);
     } else {
-        std::string stops = fmt::format("{:+.2f}", default_exposure(view));
+        std::string stops = fmt::format("{:+.2f}", kViews[view].exposure);
         if (options.split) {
-            stops += fmt::format(" | {:+.2f}", default_exposure(options.split->back().view));
+            stops += fmt::format(" | {:+.2f}", kViews[options.split->back().view].exposure);
         }
         ImGui::TextDisabled("%s stops", stops.c_str());
     }

@@ -22,8 +22,8 @@ void Title::set_error(std::string error) {
 }
 
 void Title::update(const FrameSettings& settings, std::optional<double> milliseconds) {
-    std::string words = fmt::format("{} - {}", scene_, kViewNames[settings.view]);
-    if (settings.split) words += fmt::format(" | {}", kViewNames[settings.split->right.view]);
+    std::string words = fmt::format("{} - {}", scene_, kViews[settings.view].name);
+    if (settings.split) words += fmt::format(" | {}", kViews[settings.split->right.view].name);
     if (!error_.empty()) words = error_ + " - " + words;
     const auto now = std::chrono::steady_clock::now();
     if (words == words_ && now - written_ < kPause) return;

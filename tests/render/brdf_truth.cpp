@@ -31,7 +31,7 @@ Terms evaluate(const Surface& surface, const Illumination& illumination, const g
     if (n_v > 0.0 && n_l > 0.0) {
         terms.specular = terms.distribution * terms.masking * terms.fresnel / (4.0 * n_v * n_l);
     }
-    terms.shaded = illumination.ambient * surface.color +
+    terms.shaded = surface.emission / M_PI + illumination.ambient * surface.color +
                    (terms.diffuse + terms.specular) * illumination.light * n_l;
     return terms;
 }

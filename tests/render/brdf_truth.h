@@ -6,9 +6,10 @@
 #include <glm/vec3.hpp>
 
 struct Surface {
-    glm::dvec3 color;  ///< linear
-    double roughness;  ///< in [0, 1]
-    double metalness;  ///< in [0, 1]
+    glm::dvec3 color;          ///< linear
+    double roughness;          ///< in [0, 1]
+    double metalness;          ///< in [0, 1]
+    glm::dvec3 emission{0.0};  ///< 1 is as bright as white paper that faces a light of colour 1
 };
 
 struct Illumination {

@@ -126,6 +126,29 @@ void write_stage(const fs::path& folder, const std::string& name,
     scene.quad({-1.2, 0.0, -1.0}, {1.3, 0.0, 0.3}, {0.0, 1.3, -0.3});
 }
 
+/// What emits and what has vertex colours.
+void write_glow(const fs::path& folder) {
+    SceneWriter scene(folder, "glow");
+    scene.material("floor", {"Kd 0.9 0.9 0.9", "Pr 0.8"});
+    const dvec3 up(0.0, 1.0, 0.0);
+    scene.polygon({{{-3.0, 0.0, 2.0}, {0, 0}, up, dvec3(1.0, 0.1, 0.1)},
+                   {{3.0, 0.0, 2.0}, {1, 0}, up, dvec3(0.1, 0.9, 0.2)},
+                   {{3.0, 0.0, -2.0}, {1, 1}, up, dvec3(0.2, 0.3, 1.0)},
+                   {{-3.0, 0.0, -2.0}, {0, 1}, up, dvec3(1.0, 1.0, 1.0)}});
+    scene.material("lamp", {"Kd 0.2 0.2 0.2", "Pr 0.4", "Ke 0.9 0.5 0.1"});
+    scene.sphere({-1.4, 0.5, 0.4}, 0.5, 24, 12);
+    scene.material("sign", {"Kd 0.3 0.3 0.3", "Pr 0.5", "map_Ke letter.png"});
+    scene.cube({0.2, 0.5, -0.3}, 0.5, 25.0);
+    scene.material("glowing_leaf", {"Kd 0.1 0.3 0.1", "Pr 0.5", "Ke 0.3 1 0.2", "map_Ke leaf.png",
+                                    "map_d leaf_mask.png"});
+    scene.quad({1.0, 0.0, 0.2}, {1.0, 0.0, 0.2}, {0.0, 1.3, 0.0});
+
+    SceneWriter screen(folder, "screen");
+    screen.material(
+        "screen", {"Kd 0.5 0.5 0.5", "Ke 2 1 0.25", "map_Ke quadrants.png", "map_d leaf_mask.png"});
+    screen.quad({-1.0, -1.0, 0.0}, {2.0, 0.0, 0.0}, {0.0, 2.0, 0.0});
+}
+
 void write_plates(const fs::path& folder) {
     SceneWriter plate(folder, "plate");
     plate.material("bumps", {"Kd 0.6 0.6 0.6", "Pr 0.4", "norm bumps.png"});
@@ -168,6 +191,7 @@ int main(int argc, char** argv) {
         write_textures(folder);
         write_stage(folder, "stage");
         write_stage(folder, "stage_z_up", [](dvec3 p) { return dvec3(p.x, -p.z, p.y); });
+        write_glow(folder);
         write_plates(folder);
         write_greys(folder);
         write_gltf_scenes(folder);

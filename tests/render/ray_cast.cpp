@@ -111,11 +111,12 @@ std::vector<std::size_t> seen_triangles(const std::vector<Triangle>& triangles,
 Hit hit(const Triangle& triangle, const PinholeCamera& camera, double x, double y) {
     const Intersection found =
         intersect(triangle, camera.position, direction_of(camera, axes_of(camera), x, y));
-    Hit result{glm::dvec3(0.0), glm::dvec3(0.0)};
+    Hit result{glm::dvec3(0.0), glm::dvec3(0.0), glm::dvec3(0.0)};
     for (int k = 0; k < 3; ++k) {
         const auto corner = static_cast<std::size_t>(k);
         result.position += found.weights[k] * triangle.positions[corner];
         result.normal += found.weights[k] * triangle.normals[corner];
+        result.color += found.weights[k] * triangle.colors[corner];
     }
     result.normal = glm::normalize(result.normal);
     return result;

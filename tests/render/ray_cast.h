@@ -10,6 +10,7 @@ struct Triangle {
     std::array<glm::dvec3, 3> positions;
     std::array<glm::dvec3, 3> normals;
     std::size_t material = 0;
+    std::array<glm::dvec3, 3> colors{glm::dvec3(1.0), glm::dvec3(1.0), glm::dvec3(1.0)};
 };
 
 /// Right-handed, up +Y; pixel centres at + 0.5, row 0 at the top.
@@ -24,6 +25,7 @@ struct PinholeCamera {
 struct Hit {
     glm::dvec3 position;
     glm::dvec3 normal;  ///< interpolated, unit length
+    glm::dvec3 color;   ///< interpolated
 };
 
 /// Where the ray through the point (x, y) of the picture, in pixels from its upper left corner,

@@ -36,14 +36,15 @@ void SceneWriter::line(const std::string& text) {
 void SceneWriter::polygon(const std::vector<Corner>& corners, Attributes attributes) {
     const bool uvs = attributes == Attributes::uvs || attributes == Attributes::both;
     const bool normals = attributes == Attributes::normals || attributes == Attributes::both;
-    const auto vector = [&](const char* keyword, glm::dvec3 v) {
-        if (turn_) v = turn_(v);
-        line(fmt::format("{} {} {} {}", keyword, number(v.x), number(v.y), number(v.z)));
+    const auto text_of = [](const glm::dvec3& v) {
+        return fmt::format(" {} {} {}", number(v.x), number(v.y), number(v.z));
     };
+    const auto turned = [&](const glm::dvec3& v) { return text_of(turn_ ? turn_(v) : v); };
     for (const Corner& corner : corners) {
-        vector("v", corner.position);
+        line(fmt::format("v{}{}", turned(corner.position),
+                         corner.color ? text_of(*corner.color) : std::string()));
         if (uvs) line(fmt::format("vt {} {}", number(corner.uv.x), number(corner.uv.y)));
-        if (normals) vector("vn", corner.normal);
+        if (normals) line(fmt::format("vn{}", turned(corner.normal)));
     }
     std::string face = "f";
     const int count = static_cast<int>(corners.size());

@@ -7,6 +7,7 @@
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct Corner {
     glm::dvec3 position;
     glm::dvec2 uv{0.0};
     glm::dvec3 normal{0.0};
+    std::optional<glm::dvec3> color{};  ///< sRGB-encoded
 };
 
 enum class Attributes { positions, uvs, normals, both };

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <glm/vec2.hpp>
 #include <string>
 #include <vector>
@@ -21,16 +23,32 @@ namespace {
 using glm::dvec2;
 using glm::dvec3;
 
+/// IEC 61966-2-1.
+double linear_of_srgb(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+/// Whole numbers from 0 to 255, dark ones among them.
+dvec3 color_bytes(const dvec3& position) {
+    return glm::round(127.5 + 127.5 * glm::sin(0.8 * position + dvec3(0.0, 1.0, 2.0)));
+}
+
 /// A mesh whose coordinates are floats, so that no number changes on its way through the files.
 struct Mesh {
     std::vector<Surface> materials;
     std::vector<Triangle> triangles;
+
+    /// With colours, a vertex has one that depends on its place alone.
+    bool colors = false;
 
     void add(const std::array<dvec3, 3>& positions, const std::array<dvec3, 3>& normals) {
         Triangle triangle{{}, {}, materials.size() - 1};
         for (std::size_t k = 0; k < 3; ++k) {
             triangle.positions[k] = dvec3(glm::vec3(positions[k]));
             triangle.normals[k] = dvec3(glm::vec3(normals[k]));
+            if (!colors) continue;
+            const dvec3 bytes = color_bytes(triangle.positions[k]);
+            for (int c = 0; c < 3; ++c) triangle.colors[k][c] = linear_of_srgb(bytes[c] / 255.0);
         }
         triangles.push_back(triangle);
     }
@@ -67,12 +85,20 @@ struct Mesh {
             mtl << fmt::format("newmtl m{}\nKd {:.9g} {:.9g} {:.9g}\nPr {:.9g}\nPm {:.9g}\n", i,
                                materials[i].color.r, materials[i].color.g, materials[i].color.b,
                                materials[i].roughness, materials[i].metalness);
+            const dvec3& emission = materials[i].emission;
+            if (emission == dvec3(0.0)) continue;
+            mtl << fmt::format("Ke {:.9g} {:.9g} {:.9g}\n", emission.r, emission.g, emission.b);
         }
         std::ofstream file(obj);
         file << "mtllib " << mtl_path.filename().string() << '\n';
         for (const Triangle& triangle : triangles) {
             for (const dvec3& p : triangle.positions) {
-                file << fmt::format("v {:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z);
+                file << fmt::format("v {:.9g} {:.9g} {:.9g}", p.x, p.y, p.z);
+                if (colors) {
+                    const dvec3 c = color_bytes(p) / 255.0;
+                    file << fmt::format(" {:.9g} {:.9g} {:.9g}", c.r, c.g, c.b);
+                }
+                file << '\n';
             }
             for (const dvec3& n : triangle.normals) {
                 file << fmt::format("vn {:.9g} {:.9g} {:.9g}\n", n.x, n.y, n.z);
@@ -111,6 +137,18 @@ Mesh spheres() {
     Mesh mesh;
     for (int i = 0; i < 12; ++i) {
         mesh.materials.push_back(surface(i));
+        mesh.add_sphere({(i % 4 - 1.5) * 1.3, (1.0 - i / 4) * 1.3, 0.2 * (i % 3)}, 0.6, 14, 8);
+    }
+    return mesh;
+}
+
+/// Spheres every other one of which emits, with vertex colours.
+Mesh colored_spheres() {
+    Mesh mesh;
+    mesh.colors = true;
+    for (int i = 0; i < 12; ++i) {
+        mesh.materials.push_back(surface(i));
+        if (i % 2 == 0) mesh.materials.back().emission = {0.5 * i, 0.25, 3.0 - 0.25 * i};
         mesh.add_sphere({(i % 4 - 1.5) * 1.3, (1.0 - i / 4) * 1.3, 0.2 * (i % 3)}, 0.6, 14, 8);
     }
     return mesh;
@@ -162,6 +200,10 @@ const Shot kShots[] = {
      {{0.25, 0.5, 7.0}, {0.0, 0.0, 0.0}, 42, 225, 141},
      {1.5, 2.0, 5.0}},
     {"spheres", spheres, {{0.5, 0.75, 5.0}, {0.0, 0.0, 0.0}, 50, 224, 150}, {2.0, 3.0, 4.0}},
+    {"colors_and_emission",
+     colored_spheres,
+     {{0.5, 0.75, 5.0}, {0.0, 0.0, 0.0}, 50, 224, 150},
+     {2.0, 3.0, 4.0}},
     {"light_behind", spheres, {{-0.5, 0.25, 5.0}, {0.0, 0.0, 0.0}, 50, 224, 150}, {1.0, 2.0, -4.0}},
     {"grazing", floor, {{0.25, 0.375, 11.0}, {0.0, 0.0, 0.0}, 60, 223, 121}, {0.5, 0.25, -9.0}},
     {"from_below", floor, {{0.25, -1.5, 8.0}, {0.0, 0.0, 0.0}, 60, 160, 91}, {0.5, 3.0, -2.0}},
@@ -177,7 +219,7 @@ std::string text_of(const dvec3& v) {
 /// What a view shows, where the vectors are unit vectors at a point of the surface.
 struct Fragment {
     Surface surface;
-    dvec3 normal, to_light, to_camera;
+    dvec3 normal, to_light, to_camera, vertex_color;
     Terms terms;
 };
 
@@ -201,6 +243,8 @@ const ViewTruth kViews[] = {
     {"vertex-normal", [](const Fragment& f) { return encoded(f.normal); }},
     {"view-direction", [](const Fragment& f) { return encoded(f.to_camera); }},
     {"light-direction", [](const Fragment& f) { return encoded(f.to_light); }},
+    {"vertex-color", [](const Fragment& f) { return f.vertex_color; }},
+    {"emission", [](const Fragment& f) { return f.surface.emission; }},
     {"base-color", [](const Fragment& f) { return f.surface.color; }},
     {"roughness", [](const Fragment& f) { return dvec3(f.surface.roughness); }},
     {"metalness", [](const Fragment& f) { return dvec3(f.surface.metalness); }},
@@ -212,7 +256,9 @@ Fragment fragment_at(const Shot& shot, const Mesh& mesh, std::size_t triangle, d
                       point.normal,
                       glm::normalize(shot.light - point.position),
                       glm::normalize(shot.camera.position - point.position),
+                      point.color,
                       {}};
+    fragment.surface.color *= point.color;
     fragment.terms = evaluate(fragment.surface, kIllumination, fragment.normal, fragment.to_light,
                               fragment.to_camera);
     return fragment;

@@ -98,6 +98,8 @@ vec3 shown(const cw2::Pick& pick, const std::string& view) {
     if (view == "light-direction") return color(pick.to_light);
     if (view == "view-direction") return color(pick.to_camera);
     if (view == "base-color") return pick.base_color;
+    if (view == "vertex-color") return pick.vertex_color;
+    if (view == "emission") return pick.emission;
     if (view == "roughness") return vec3(pick.roughness);
     if (view == "metalness") return vec3(pick.metalness);
     if (view == "distribution") return vec3(pick.distribution);
@@ -117,8 +119,9 @@ void expect_numbers_of_views(const std::filesystem::path& scene, const Words& wo
     for (const glm::ivec2& pixel : pixels) picks.push_back(reader.pick(pixel.x, pixel.y));
     int surfaces = 0;
     for (const std::string view :
-         {"shaded", "normal", "light-direction", "view-direction", "base-color", "roughness",
-          "metalness", "distribution", "masking", "fresnel", "diffuse", "specular"}) {
+         {"shaded", "normal", "light-direction", "view-direction", "base-color", "vertex-color",
+          "emission", "roughness", "metalness", "distribution", "masking", "fresnel", "diffuse",
+          "specular"}) {
         Words options = with_size(words);
         options.insert(options.end(), {"--samples", "1", "--view", view});
         const Picture picture = draw_scene(scene, ".exr", options);
@@ -134,7 +137,7 @@ void expect_numbers_of_views(const std::filesystem::path& scene, const Words& wo
             }
         }
     }
-    EXPECT_GT(surfaces, 12 * 20);
+    EXPECT_GT(surfaces, 14 * 20);
 }
 
 TEST_F(Picker, ReadsWhatTheViewsShowAtTheSamePixel) {
@@ -148,6 +151,22 @@ TEST_F(Picker, ReadsWhatTheViewsShowAtTheSamePixel) {
     other.insert(other.end(), {"--time", "0.6", "--light-color", "3,2,1", "--roughness", "0.3",
                                "--normal-strength", "1.7", "--no-alpha-mask"});
     expect_numbers_of_views(scene, other);
+}
+
+TEST_F(Picker, KnowsEmissionAndVertexColors) {
+    std::ofstream(folder_ / "lamp.mtl") << "newmtl lamp\nKd 1 0.5 1\nKe 4 0.25 0\nPr 0.5\n";
+    std::ofstream(folder_ / "lamp.obj")
+        << "mtllib lamp.mtl\nv -2 -2 0 1 0 0\nv 2 -2 0 1 1 1\nv 2 2 0 0 0 1\nv -2 2 0 0.2 0.2 0.2\n"
+           "vn 0 0 1\nusemtl lamp\nf 1//1 2//1 3//1 4//1\n";
+    const std::filesystem::path scene = bake_scene(folder_ / "lamp.obj");
+    const Words camera{"--camera-position", "0.1,0.2,2", "--camera-target", "0,0,0"};
+    expect_numbers_of_views(scene, camera);
+    const auto pick = Reader(scene, camera).pick(80, 45);
+    ASSERT_TRUE(pick);
+    EXPECT_EQ(pick->emission, vec3(4.0f, 0.25f, 0.0f));
+    EXPECT_FALSE(pick->unlit);
+    EXPECT_LT(pick->vertex_color.g, 0.9f);
+    EXPECT_NEAR(pick->base_color.g, 0.5f * pick->vertex_color.g, 1e-6f);
 }
 
 TEST_F(Picker, LeavesOutWhatIsDoneForTheEye) {
@@ -242,6 +261,8 @@ TEST_F(Picker, PixelPrintsTheNumbersOfTheViews) {
     }
     for (const auto& [view, key] : {std::pair{"shaded", "shaded"},
                                     {"base-color", "base_color"},
+                                    {"vertex-color", "vertex_color"},
+                                    {"emission", "emission"},
                                     {"specular", "specular"},
                                     {"fresnel", "fresnel"}}) {
         Words options = with_size(camera);

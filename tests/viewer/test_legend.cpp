@@ -83,14 +83,14 @@ TEST(Legend, TicksAreRoundNumbers) {
 
 TEST(Legend, EveryTickStandsAtItsValue) {
     for (View view = 0; view < interop::kViewCount; ++view) {
-        const ValueRange& range = kViewRanges[view];
+        const ValueRange& range = kViews[view].range;
         for (const Tick& tick : ticks_of(range)) {
             const double value = std::stod(tick.label);
             const double at =
                 range.low > 0.0f
                     ? std::log10(value / range.low) / std::log10(range.high / double{range.low})
                     : (value - range.low) / (double{range.high} - range.low);
-            EXPECT_NEAR(tick.position, at, 1e-5) << kViewNames[view] << ' ' << tick.label;
+            EXPECT_NEAR(tick.position, at, 1e-5) << kViews[view].name << ' ' << tick.label;
         }
     }
 }

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 class ShaderCompiler : public testing::Test {
  protected:
     ShaderCompiler() {
-        for (const char* folder : {"shaders", "mesh-format"}) {
+        for (const char* folder : {"shaders", "mesh-format", "common"}) {
             fs::copy(fs::path(CW2_SOURCE_DIR) / folder, root_ / folder);
         }
     }
@@ -45,9 +45,12 @@ class ShaderCompiler : public testing::Test {
 TEST_F(ShaderCompiler, GivesTheSameWordsAsTheBuild) {
     const cw2::CompiledShaders shaders = cw2::compile_shaders(root_.path());
     const cw2::ShaderCode built = cw2::built_in_shaders();
-    EXPECT_TRUE(std::ranges::equal(shaders.vertex, built.vertex));
-    EXPECT_TRUE(std::ranges::equal(shaders.opaque_fragment, built.opaque_fragment));
-    EXPECT_TRUE(std::ranges::equal(shaders.alpha_mask_fragment, built.alpha_mask_fragment));
+    for (std::size_t i = 0; i < built.size(); ++i) {
+        for (const bool colors : {false, true}) {
+            EXPECT_TRUE(std::ranges::equal(shaders.words[i][colors], built[i][colors]))
+                << cw2::kShaderFiles[i] << ' ' << colors;
+        }
+    }
 }
 
 TEST_F(ShaderCompiler, AnErrorNamesItsFileAndLine) {
@@ -63,7 +66,7 @@ TEST_F(ShaderCompiler, AnErrorInAnIncludedFileNamesThatFile) {
 TEST_F(ShaderCompiler, AMissingIncludeIsReportedWhereItIsIncluded) {
     fs::remove(file("interop.h"));
     const std::string text = error();
-    EXPECT_TRUE(text.starts_with(file("mesh.vert").string() + ":5: ")) << text;
+    EXPECT_TRUE(text.starts_with(file("mesh.vert").string() + ":7: ")) << text;
     EXPECT_NE(text.find("shaders/interop.h"), std::string::npos) << text;
     EXPECT_EQ(text.find('\n'), std::string::npos) << text;
 }

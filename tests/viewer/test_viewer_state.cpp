@@ -87,12 +87,12 @@ TEST(ViewerState, TheLightMovesOnlyBetweenTwoSpacesAndGoesOnWhereItStopped) {
 
 TEST(ViewerState, NextViewMeetsEveryViewAndPreviousGoesBack) {
     Viewer viewer;
-    for (cw2::View view = 1; view <= cw2::kViewNames.size(); ++view) {
+    for (cw2::View view = 1; view <= cw2::kViews.size(); ++view) {
         EXPECT_TRUE(viewer.apply(command(CommandKind::next_view)));
-        EXPECT_EQ(viewer.state.settings().view, view % cw2::kViewNames.size());
+        EXPECT_EQ(viewer.state.settings().view, view % cw2::kViews.size());
     }
     viewer.apply(command(CommandKind::previous_view));
-    EXPECT_EQ(viewer.state.settings().view, cw2::kViewNames.size() - 1);
+    EXPECT_EQ(viewer.state.settings().view, cw2::kViews.size() - 1);
     viewer.apply(command(CommandKind::show_view, 4));
     EXPECT_EQ(viewer.state.settings().view, 4u);
 }
