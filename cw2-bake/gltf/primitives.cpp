@@ -8,6 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <list>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -363,8 +364,14 @@ void GltfPrimitives::add_node(int node) {
     const int mesh = file_.model.nodes[static_cast<std::size_t>(node)].mesh;
     if (mesh < 0) return;
     const auto& primitives = file_.model.meshes[static_cast<std::size_t>(mesh)].primitives;
-    for (std::size_t i = 0; i < primitives.size(); ++i)
-        add_primitive(node, primitives[i], fmt::format("/meshes/{}/primitives/{}", mesh, i));
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        const std::string place = fmt::format("/meshes/{}/primitives/{}", mesh, i);
+        try {
+            add_primitive(node, primitives[i], place);
+        } catch (const std::bad_alloc&) {
+            fail_at(file_.path, place, "needs more memory than there is");
+        }
+    }
 }
 
 void GltfPrimitives::warn_of_left_out() const {
