@@ -369,7 +369,7 @@ void GltfPrimitives::add_node(int node) {
         try {
             add_primitive(node, primitives[i], place);
         } catch (const std::bad_alloc&) {
-            fail_at(file_.path, place, "needs more memory than there is");
+            fail_at(file_.path, place, "there is not enough memory to read it");
         }
     }
 }

@@ -187,6 +187,49 @@ TEST_F(Export, KeepsTheCameraAndTheLight) {
     }
 }
 
+/// Far from the origin, with vertex colours, a lamp and a pane of glass; then one that is unlit.
+TEST_F(Export, ColoursEmissionUnlitBlendingAndTheOriginComeBack) {
+    write("lamp.mtl",
+          "newmtl lamp\nKd 0.5 0.5 0.5\nKe 3 2 1\nmap_Ke mask.png\n"
+          "newmtl glass\nKd 1 0 0\nd 0.25\n");
+    write("lamp.obj",
+          "mtllib lamp.mtl\nv 500000 4000000 0 1 0 0\nv 500001 4000000 0 0.2 0.4 0.6\n"
+          "v 500000 4000001 0 0 0.5 1\nv 500001 4000001 0 0.1 1 1\nvt 0 0\nvt 1 0\nvt 0 1\n"
+          "usemtl lamp\nf 1/1 2/2 3/3\nusemtl glass\nf 2/2 4/1 3/3\n");
+    bake_well(exactly({"lamp.obj", "-o", "first.cw2mesh"}));
+    bake_well({"first.cw2mesh", "-o", "lamp.gltf", "--quiet"});
+    nlohmann::json gltf = nlohmann::json::parse(read("lamp.gltf"));
+    EXPECT_EQ(gltf["materials"][1]["alphaMode"], "BLEND");
+    EXPECT_EQ(gltf["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"][3], 0.25);
+    bake_well(exactly({"lamp.gltf", "-o", "second.cw2mesh"}));
+    const Document first = open("first.cw2mesh");
+    const Document second = open("second.cw2mesh");
+    EXPECT_GT(first.scene.origin[0], 4e5);
+    EXPECT_TRUE(std::ranges::equal(first.scene.origin, second.scene.origin));
+    ASSERT_EQ(first.meshes.size(), 2u);
+    EXPECT_TRUE(std::ranges::equal(first.vertices, second.vertices));  // with their colours
+    ASSERT_EQ(second.materials.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(second.meshes[i].forms.color, ColorForm::rgba8);
+        const MaterialRecord& a = first.materials[i];
+        const MaterialRecord& b = second.materials[i];
+        for (int channel = 0; channel < 3; ++channel)
+            EXPECT_FLOAT_EQ(a.emission[channel], b.emission[channel]);
+        EXPECT_EQ(a.opacity, b.opacity);
+        EXPECT_EQ(a.flags, b.flags);
+        EXPECT_EQ(a.textures[MapUse::emission], b.textures[MapUse::emission]);
+    }
+    EXPECT_EQ(second.materials[0].emission[0], 3);
+    EXPECT_NE(second.materials[0].textures[MapUse::emission], kNoTexture);
+    EXPECT_TRUE(second.materials[1].flags & kBlend);
+
+    gltf["materials"][0]["extensions"]["KHR_materials_unlit"] = nlohmann::json::object();
+    write("unlit.gltf", gltf.dump());
+    bake_well({"unlit.gltf", "-o", "unlit.glb", "--quiet"});
+    bake_well({"unlit.glb", "-o", "unlit.cw2mesh", "--quiet"});
+    EXPECT_TRUE(open("unlit.cw2mesh").materials[0].flags & kUnlit);
+}
+
 TEST_F(Export, AnImageOfTwoTexturesIsNotOutOfProportion) {
     const auto line = [](int width, int height) {
         return painted(width, height, 3,
