@@ -20,6 +20,7 @@
 #include "cw2/render/picker.h"
 #include "cw2/render/pipelines.h"
 #include "cw2/render/scene.h"
+#include "cw2/source_bake.h"
 #include "cw2/vulkan/resources.h"
 
 namespace cw2 {
@@ -264,11 +265,14 @@ void render_headless(const Device& device, const Options& options) {
     std::optional<common::OutputFile> stats;
     if (options.stats) stats.emplace(*options.stats);
 
+    const std::unique_ptr<SourceBake> bake = bake_of(options, device);
+    if (bake) wait_for(*bake);
+
     Timings timings;
     Clock::time_point start = Clock::now();
     const Layouts layouts(device);
-    const Scene scene =
-        load_scene(device, layouts, options.scene, texture_settings(options, device));
+    const Scene scene = load_scene(device, layouts, bake ? bake->baked() : options.scene,
+                                   texture_settings(options, device));
     timings.load = milliseconds_since(start);
 
     if (options.pixel) print_pixel(device, layouts, scene, options);

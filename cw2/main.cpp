@@ -6,7 +6,6 @@
 #include "cw2/headless.h"
 #include "cw2/interactive.h"
 #include "cw2/options/options.h"
-#include "cw2/render/scene.h"
 #include "cw2/vulkan/device.h"
 
 namespace {
@@ -24,7 +23,7 @@ int run(const cw2::Options& options) {
         return 0;
     }
     // A scene that is none is told before a device or a display is missed.
-    if (!options.list_devices) cw2::open_scene(options.scene);
+    if (!options.list_devices) const common::MappedFile exists(options.scene);
     if (!options.list_devices && !options.output && !options.pixel) {
         return cw2::run_window(options, CW2_SOURCE_DIR);
     }

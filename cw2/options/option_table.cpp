@@ -199,6 +199,16 @@ Setting flag(const std::string& name, const std::string& description, bool Optio
             }};
 }
 
+Setting up_setting() {
+    return {"up", "y|z", "up axis of a scene that is not baked yet [y]",
+            [](Options& options, const std::string& text) {
+                options.z_up = text == "z";
+                return text == "y" || text == "z" ? std::string()
+                                                  : fmt::format("'{}' is neither y nor z", text);
+            },
+            [](const Options& options) { return options.z_up ? "\"z\"" : std::string(); }};
+}
+
 Setting view_setting() {
     return {"view", "NAME", "what to show; --list-views names all [shaded]",
             [](Options& options, const std::string& text) {
@@ -238,7 +248,9 @@ std::function<bool(const std::optional<T>&)> between(T low, T high) {
 std::vector<Setting> all_settings() {
     using O = Options;
     return {
-        value("scene", "SCENE.cw2mesh", "file baked by cw2-bake", &O::scene),
+        value("scene", "SCENE", "a .cw2mesh file; .obj, .gltf and .glb are baked first", &O::scene),
+        up_setting(),
+        flag("strict", "a warning of the bake is an error", &O::strict),
         value("output", "FILE.png|FILE.exr", "write a picture and end", &O::output),
         value("size", "WIDTHxHEIGHT", "pixels [1280x720]", &O::size),
         view_setting(),

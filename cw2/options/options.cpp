@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "common/file_kind.h"
 #include "common/io.h"
 #include "cw2/options/config.h"
 #include "cw2/options/option_table.h"
@@ -63,6 +64,8 @@ void apply_config(const std::filesystem::path& path, const std::vector<Setting>&
 void require_sense(const Options& options) {
     if (options.list_devices || options.list_views) return;
     if (options.scene.empty()) throw UsageError("no scene is given; see --help");
+    if ((options.z_up || options.strict) && !is_source(options.scene))
+        throw UsageError("--up and --strict are for scenes that are not baked yet");
     if (options.output && !image_kind(*options.output)) {
         throw UsageError(
             fmt::format("--output: '{}' ends in neither .png nor .exr", options.output->string()));
@@ -102,11 +105,18 @@ void require_sense(const Options& options) {
 
 }  // namespace
 
+bool is_source(const std::filesystem::path& scene) {
+    const std::optional<common::FileKind> kind = common::file_kind(scene);
+    return kind == common::FileKind::obj || kind == common::FileKind::gltf;
+}
+
 std::optional<Options> parse_options(int argc, const char* const* argv) {
     const std::vector<Setting> settings = all_settings();
     Options options;
     CLI::App app(
-        "Draws a .cw2mesh file: in a window, or with --output into a picture with no display.",
+        "Draws a .cw2mesh file, an OBJ or a glTF: in a window, or with --output into a picture "
+        "with no "
+        "display.",
         "cw2");
     app.set_version_flag("--version", "cw2 " CW2_VERSION);
     for (const Setting& setting : settings) add_to(app, setting, options);

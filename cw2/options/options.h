@@ -39,6 +39,8 @@ inline constexpr float kVerticalFov = 60.0f;  ///< degrees, where nobody asks fo
 
 struct Options {
     std::filesystem::path scene;
+    bool z_up = false;    ///< of a scene that is not baked yet: its up axis is +Z
+    bool strict = false;  ///< the same: a warning of the bake is an error
     std::optional<std::filesystem::path> output;  ///< none: open a window, but for `pixel`
     PictureSize size;
     View view = interop::kViewShaded;
@@ -74,6 +76,9 @@ struct Options {
 
     bool operator==(const Options&) const = default;
 };
+
+/// Whether a scene is to be baked before it can be drawn.
+bool is_source(const std::filesystem::path& scene);
 
 /// Reads the command line, and the file that its --config names, whose keys are the names of the
 /// options. Relative paths in either are relative to the working directory. `--help` and

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "common/file_kind.h"
 #include "common/lfs_pointer.h"
 #include "cw2/render/decode_textures.h"
 #include "cw2/render/vertex_positions.h"
@@ -261,17 +260,6 @@ std::uint64_t Scene::triangle_count() const {
     return count;
 }
 
-common::MappedFile open_scene(const std::filesystem::path& path) {
-    common::MappedFile file(path);
-    const std::optional<common::FileKind> kind = common::file_kind(path);
-    if (kind == common::FileKind::obj || kind == common::FileKind::gltf) {
-        const std::string baked = std::filesystem::path(path).replace_extension("cw2mesh").string();
-        throw common::FileError(fmt::format(
-            "{0}: is a source file; bake it first: cw2-bake '{0}' -o '{1}'", path.string(), baked));
-    }
-    return file;
-}
-
 namespace {
 
 Scene scene_of(const Device& device, const Layouts& layouts, std::span<const std::byte> bytes,
@@ -285,7 +273,7 @@ Scene scene_of(const Device& device, const Layouts& layouts, std::span<const std
 
 Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
                  const TextureSettings& settings) {
-    const common::MappedFile file = open_scene(path);
+    const common::MappedFile file(path);
     return scene_of(device, layouts, file.bytes(), path.string(), settings);
 }
 

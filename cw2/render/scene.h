@@ -96,10 +96,6 @@ class Scene {
     std::vector<SceneChunk> chunks_;
 };
 
-/// Maps a scene file. Throws common::FileError, for a source format with the command that
-/// bakes it.
-common::MappedFile open_scene(const std::filesystem::path& path);
-
 /// Reads, checks and uploads a .cw2mesh file. Throws common::FileError or VulkanError.
 Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
                  const TextureSettings& settings);

@@ -1,0 +1,181 @@
+// cw2 draws an OBJ or a glTF: it bakes them into the user's cache, once.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <fstream>
+#include <future>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/cli/scene_folder.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class SourceBake : public SceneFolder {
+ protected:
+    void SetUp() override {
+        SceneFolder::SetUp();
+        fs::create_directory(here("temporary"));
+    }
+
+    Outcome draw(const std::string& scene, const std::string& picture,
+                 std::vector<std::string> options = {}, const std::string& program = CW2_PROGRAM) {
+        options.insert(options.begin(),
+                       {program, scene, "--output", picture, "--size", "96x64", "--samples", "1"});
+        return run(options, {{"XDG_CACHE_HOME=" + cache_, "TMPDIR=" + here("temporary").string()},
+                             folder_.path()});
+    }
+    void draw_well(const std::string& scene, const std::string& picture) {
+        const Outcome outcome = draw(scene, picture);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+    }
+    /// The inodes of what is baked in the cache.
+    std::map<fs::path, ino_t> entries() const {
+        std::map<fs::path, ino_t> found;
+        for (const auto& file : fs::directory_iterator(fs::path(cache_) / "cw2")) {
+            struct stat status {};
+            if (file.path().extension() == ".cw2mesh" && ::stat(file.path().c_str(), &status) == 0)
+                found[file.path()] = status.st_ino;
+        }
+        return found;
+    }
+    /// So that a change is later than the bake, whatever the clock's steps.
+    void age(const std::string& name) const {
+        fs::last_write_time(here(name), fs::file_time_type::clock::now() - std::chrono::hours(1));
+    }
+
+    std::string cache_ = here("cache").string();
+};
+
+TEST_F(SourceBake, IsMadeOnceAndDrawsWhatABakeByHandDraws) {
+    draw_well("scene.obj", "first.png");
+    const auto first = entries();
+    EXPECT_EQ(first.size(), 1u);
+    draw_well("scene.obj", "again.png");
+    EXPECT_EQ(entries(), first);
+    EXPECT_EQ(read("again.png"), read("first.png"));
+    bake_well({"scene.obj", "--textures", "lossless"});
+    draw_well("scene.cw2mesh", "by_hand.png");
+    EXPECT_EQ(read("by_hand.png"), read("first.png"));
+    EXPECT_FALSE(fs::exists(here("scene.obj.cw2mesh")));
+
+    bake_well({"scene.obj", "-o", "scene.glb"});
+    draw_well("scene.glb", "gltf.png");
+    EXPECT_EQ(entries().size(), 2u);
+}
+
+TEST_F(SourceBake, IsMadeAnewWhenAnythingItReadHasChanged) {
+    draw_well("scene.obj", "before.png");
+    const auto before = entries();
+    write("scene.mtl", read("scene.mtl") + "newmtl unused\nKd 1 0 0\n");
+    draw_well("scene.obj", "unused.png");
+    EXPECT_NE(entries(), before);
+    EXPECT_EQ(read("unused.png"), read("before.png"));
+    write_picture(here("colors.png"), painted(16, 16, 3, [](int, int) {
+                      return std::vector{1.0, 0.0, 0.0};
+                  }));
+    draw_well("scene.obj", "red.png");
+    EXPECT_NE(read("red.png"), read("before.png"));
+    EXPECT_EQ(entries().size(), 1u);
+}
+
+TEST_F(SourceBake, WarnsAgainUntilWhatIsMissingIsThere) {
+    fs::rename(here("mask.png"), here("away.png"));
+    const Outcome first = draw("scene.obj", "a.png");
+    EXPECT_EQ(first.status, 0);
+    EXPECT_NE(first.err.find("cw2-bake: warning: "), std::string::npos) << first.err;
+    EXPECT_NE(first.err.find("mask.png"), std::string::npos) << first.err;
+    const auto before = entries();
+    const Outcome again = draw("scene.obj", "a.png");
+    EXPECT_EQ(again.err, first.err);
+    EXPECT_EQ(entries(), before);
+    fs::rename(here("away.png"), here("mask.png"));
+    draw_well("scene.obj", "b.png");
+    EXPECT_NE(read("b.png"), read("a.png"));
+}
+
+TEST_F(SourceBake, PassesOptionsOnAndErrorsBack) {
+    draw_well("scene.obj", "y.png");
+    EXPECT_EQ(draw("scene.obj", "z.png", {"--up", "z"}).status, 0);
+    EXPECT_NE(read("y.png"), read("z.png"));
+    EXPECT_EQ(entries().size(), 2u);
+
+    fs::remove(here("mask.png"));
+    const Outcome strict = draw("scene.obj", "strict.png", {"--strict"});
+    EXPECT_EQ(strict.status, 1);
+    EXPECT_TRUE(strict.err.starts_with("cw2: ")) << strict.err;
+    EXPECT_NE(strict.err.find("scene.mtl:8: "), std::string::npos) << strict.err;
+    EXPECT_FALSE(fs::exists(here("strict.png")));
+
+    write("broken.obj", "v 0 0 0\nf 1 2 3\n");
+    const Outcome broken = draw("broken.obj", "broken.png");
+    EXPECT_EQ(broken.status, 1);
+    EXPECT_NE(broken.err.find("broken.obj:2: "), std::string::npos) << broken.err;
+
+    bake_well({"scene.obj", "--textures", "none"});
+    EXPECT_EQ(draw("scene.cw2mesh", "a.png", {"--up", "z"}).status, 2);
+    EXPECT_EQ(draw("missing.obj", "a.png").status, 1);
+}
+
+TEST_F(SourceBake, DoesWithoutACacheAndLeavesNothing) {
+    for (const char* place : {"/proc/none", "relative"}) {
+        cache_ = place;
+        const Outcome outcome =
+            run({CW2_PROGRAM, "scene.obj", "--output", "a.png", "--size", "96x64"},
+                {{"XDG_CACHE_HOME=" + cache_, "HOME=/proc/none",
+                  "TMPDIR=" + here("temporary").string()},
+                 folder_.path()});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        EXPECT_TRUE(fs::is_empty(here("temporary")));
+    }
+}
+
+TEST_F(SourceBake, RunsAtTheSameTimeShareOneEntry) {
+    std::vector<std::future<Outcome>> runs;
+    for (int i = 0; i < 4; ++i) {
+        runs.push_back(std::async(std::launch::async, [this, i] {
+            return draw("scene.obj", "p" + std::to_string(i) + ".png");
+        }));
+    }
+    for (auto& each : runs) {
+        const Outcome outcome = each.get();
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+    }
+    for (int i = 1; i < 4; ++i) EXPECT_EQ(read("p" + std::to_string(i) + ".png"), read("p0.png"));
+    EXPECT_EQ(entries().size(), 1u);
+}
+
+TEST_F(SourceBake, TheOldestEntriesGoAboveTwoGigabytes) {
+    draw_well("scene.obj", "a.png");
+    const fs::path folder = fs::path(cache_) / "cw2";
+    for (const char* name : {"old", "older"}) {
+        for (const char* extension : {".cw2mesh", ".lock", ".notes"})
+            std::ofstream(folder / (std::string(name) + extension)) << "x";
+        fs::resize_file(folder / (std::string(name) + ".cw2mesh"), std::uintmax_t{1200} << 20);
+    }
+    age("cache/cw2/old.cw2mesh");
+    fs::last_write_time(folder / "older.cw2mesh",
+                        fs::file_time_type::clock::now() - std::chrono::hours(2));
+    bake_well({"scene.obj", "-o", "scene.glb"});
+    draw_well("scene.glb", "a.png");
+    EXPECT_TRUE(fs::exists(folder / "old.cw2mesh"));
+    EXPECT_FALSE(fs::exists(folder / "older.cw2mesh"));
+    EXPECT_FALSE(fs::exists(folder / "older.notes"));
+    EXPECT_EQ(entries().size(), 3u);
+}
+
+TEST_F(SourceBake, AMissingBakerIsNamed) {
+    fs::create_directory(here("bin"));
+    fs::copy_file(CW2_PROGRAM, here("bin/cw2"));
+    const Outcome outcome = draw("scene.obj", "a.png", {}, here("bin/cw2").string());
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find(here("bin/cw2-bake").string()), std::string::npos) << outcome.err;
+}
+
+}  // namespace
