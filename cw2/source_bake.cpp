@@ -79,37 +79,21 @@ std::vector<fs::path> inputs_of(const std::string& depfile) {
         if (behind_colon && !name.empty()) inputs.emplace_back(name);
         name.clear();
     };
-    for (std::size_t i = 0; i < depfile.size(); ++i) {
+    for (std::size_t i = 0; i < depfile.size() && depfile[i] != '\n'; ++i) {
         const char c = depfile[i];
         const char next = i + 1 < depfile.size() ? depfile[i + 1] : '\n';
         if (c == '\\' && next == '\n') {
             end_name();
             ++i;
-        } else if (c == '\\') {
-            const std::size_t begin = i;
-            while (i < depfile.size() && depfile[i] == '\\') ++i;
-            const std::size_t count = i - begin;
-            const char escaped = i < depfile.size() ? depfile[i] : '\n';
-            // Backslashes are doubled only before a blank, and one more stands before what would
-            // mean something else.
-            const bool blank = escaped == ' ' || escaped == '\t';
-            const bool special = escaped == '#' || escaped == ':' || escaped == '%';
-            name.append(blank ? count / 2 : special ? count - 1 : count, '\\');
-            if (blank || special) {
-                name += escaped;
-            } else {
-                --i;
-            }
-        } else if (c == '$' && next == '$') {
-            name += '$';
+        } else if ((c == '\\' && (next == ' ' || next == '#' || next == ':')) ||
+                   (c == '$' && next == '$')) {
+            name += next;
             ++i;
         } else if (c == ':' && !behind_colon) {
             name.clear();
             behind_colon = true;
-        } else if (c == ' ' || c == '\t') {
+        } else if (c == ' ') {
             end_name();
-        } else if (c == '\n') {
-            break;
         } else {
             name += c;
         }
@@ -194,7 +178,7 @@ bool SourceBake::done(std::chrono::milliseconds patience) {
     }
     if (process_ > 0) {
         if (!read_output(patience)) return false;
-        finish();
+        if (!finish()) return false;
     }
     if (lock_ >= 0) ::close(std::exchange(lock_, -1));
     return is_done_ = true;
@@ -238,9 +222,10 @@ bool SourceBake::reuse() {
 
 void SourceBake::start() {
     sources_.clear();
-    std::vector<std::string> command{
-        baker_.string(), source_.string(), "-o",
-        baked_.string(), "--depfile",      fs::path(baked_).replace_extension("d").string()};
+    std::vector<std::string> command{baker_.string(), source_.string(), "-o", baked_.string()};
+    if (has_depfile_)
+        command.insert(command.end(),
+                       {"--depfile", fs::path(baked_).replace_extension("d").string()});
     command.insert(command.end(), options_.begin(), options_.end());
     const std::array<int, 2> ends = open_channel();
     started_ = fs::file_time_type::clock::now();
@@ -285,7 +270,8 @@ void SourceBake::take(std::string_view text) {
     if (text_.starts_with('[')) progress_ = text_;
 }
 
-void SourceBake::finish() {
+/// False where it was started again.
+bool SourceBake::finish() {
     int status = 0;
     while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) continue;
     process_ = -1;
@@ -295,12 +281,21 @@ void SourceBake::finish() {
         fail(source_, fmt::format("cw2-bake was ended by signal {}", WTERMSIG(status)));
     if (WEXITSTATUS(status) != 0) {
         const std::string last = lines_.empty() ? "cw2-bake cannot be started" : lines_.back();
+        // Names that a depfile cannot hold; without one the next run bakes again.
+        if (has_depfile_ && last.find("--depfile: ") != std::string::npos) {
+            has_depfile_ = false;
+            lines_.clear();
+            start();
+            return false;
+        }
         throw common::FileError(last.starts_with(kPrefix) ? last.substr(kPrefix.size()) : last);
     }
-    sources_ = inputs_of(text_of(fs::path(baked_).replace_extension("d")));
-    if (is_temporary_) return;
-    note_sources();
+    sources_ = has_depfile_ ? inputs_of(text_of(fs::path(baked_).replace_extension("d")))
+                            : std::vector{source_};
+    if (is_temporary_) return true;
+    if (has_depfile_) note_sources();
     remove_old_entries();
+    return true;
 }
 
 /// Not where a source may have changed after it was read: then the next run bakes again.

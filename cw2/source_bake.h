@@ -56,7 +56,7 @@ class SourceBake {
     void start();
     bool read_output(std::chrono::milliseconds patience);
     void take(std::string_view text);
-    void finish();
+    bool finish();
     void note_sources();
     void remove_old_entries() const;
 
@@ -73,6 +73,7 @@ class SourceBake {
     std::string progress_;
     std::string text_;  ///< of the line at hand
     std::optional<std::filesystem::file_time_type> started_;
+    bool has_depfile_ = true;
     bool is_done_ = false;
     int lock_ = -1;
     int output_ = -1;

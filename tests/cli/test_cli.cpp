@@ -367,9 +367,7 @@ TEST_F(Cli, WhatIsNoSceneIsRefused) {
     refuse("notes.txt", {"notes.txt: "});
     refuse("existing.png", {"existing.png: "});
     refuse("/dev/null", {"/dev/null: "});
-    refuse("scene.obj", {"scene.obj: ", "bake it first", "cw2-bake", "scene.cw2mesh"});
     // With no display, either: what is wrong with the scene comes first.
-    expect_refusal("cw2", 1, {"scene.obj"}, {"scene.obj: ", "bake it first"}, {"DISPLAY="});
     expect_refusal("cw2", 1, {"missing.cw2mesh"}, {"missing.cw2mesh: "}, {"DISPLAY="});
 }
 

@@ -108,7 +108,7 @@ TEST_F(SourceBake, PassesOptionsOnAndErrorsBack) {
     const Outcome strict = draw("scene.obj", "strict.png", {"--strict"});
     EXPECT_EQ(strict.status, 1);
     EXPECT_TRUE(strict.err.starts_with("cw2: ")) << strict.err;
-    EXPECT_NE(strict.err.find("scene.mtl:8: "), std::string::npos) << strict.err;
+    EXPECT_NE(strict.err.find("scene.mtl:9: "), std::string::npos) << strict.err;
     EXPECT_FALSE(fs::exists(here("strict.png")));
 
     write("broken.obj", "v 0 0 0\nf 1 2 3\n");
@@ -126,12 +126,22 @@ TEST_F(SourceBake, DoesWithoutACacheAndLeavesNothing) {
         cache_ = place;
         const Outcome outcome =
             run({CW2_PROGRAM, "scene.obj", "--output", "a.png", "--size", "96x64"},
-                {{"XDG_CACHE_HOME=" + cache_, "HOME=/proc/none",
+                {{"XDG_CACHE_HOME=" + cache_, "HOME=/proc/none", "MESA_SHADER_CACHE_DISABLE=true",
                   "TMPDIR=" + here("temporary").string()},
                  folder_.path()});
         EXPECT_EQ(outcome.status, 0) << outcome.err;
         EXPECT_EQ(outcome.err, "");
         EXPECT_TRUE(fs::is_empty(here("temporary")));
+    }
+}
+
+TEST_F(SourceBake, TakesNamesThatMakeCannot) {
+    for (const char* name : {"it's; a #1 $cene: 100%.obj", "a b\\c.obj"}) {
+        write(name, read("scene.obj"));
+        draw_well(name, "odd.png");
+        draw_well(name, "odd.png");
+        draw_well("scene.obj", "plain.png");
+        EXPECT_EQ(read("odd.png"), read("plain.png")) << name;
     }
 }
 
