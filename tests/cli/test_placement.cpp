@@ -91,6 +91,15 @@ TEST_F(Placement, ANodeFarAwayLooksLikeItsLocalTwin) {
     bake_well({"local.gltf"});
     bake_well({"far.gltf"});
     expect_same(draw("local.cw2mesh", {}), draw("far.cw2mesh", {}));
+    // And once more through a file of its own.
+    bake_well({"far.cw2mesh", "-o", "again.glb"});
+    bake_well({"again.glb"});
+    expect_same(draw("local.cw2mesh", {}), draw("again.cw2mesh", {}));
+    const auto low = [&](const char* file) {
+        const json inspected = json::parse(bake({"--inspect", file, "--json"}).out);
+        return inspected["origin"][1].get<double>() + inspected["bounds_min"][1].get<double>();
+    };
+    EXPECT_NEAR(low("again.cw2mesh"), low("far.cw2mesh"), 1e-4);
 }
 
 TEST_F(Placement, ATurnToYUpTurnsTheOrigin) {
