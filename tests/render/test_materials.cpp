@@ -184,6 +184,12 @@ TEST_F(Materials, UnlitShowsItsBaseColorWhateverTheLight) {
         }
         EXPECT_GT(seen, 1000);
     }
+    const Outcome pixel =
+        run({CW2_PROGRAM, scene, "--size", "121x121", "--fov", "90", "--camera-position", "0,0,1",
+             "--camera-target", "0,0,0", "--pixel", "75,60"});
+    const nlohmann::json numbers = nlohmann::json::parse(pixel.out);
+    EXPECT_EQ(numbers["unlit"], true);
+    EXPECT_NEAR(numbers["shaded"][0].get<double>(), color.at(75, 60)[0] / M_PI, 1e-6);
     const Picture lit = draw_square(colored_leaf(false), "shaded", {"--light-color", "9,9,9"});
     EXPECT_GT(lit.at(75, 60)[0], color.at(75, 60)[0] / M_PI + 0.01);
 }
