@@ -74,13 +74,13 @@ namespace {
 /// Sponza, launch to one picture, 4 samples a pixel, seconds of processor time: at 1280 x 720 3.0
 /// from blocks and 2.5 decoded, at 320 x 180 0.8 and 1.0; in between lies the limit.
 bool repays_decoding(const Options& options) {
-    constexpr std::uint64_t kSamples = 1'200'000;
+    constexpr std::uint64_t kWorthIt = 1'200'000;
     // Of the whole turn, so that a part of it has the same frames.
     const bool many = !options.output || options.bench_frames > 0 ||
                       (options.frames && options.frames->count > 1);
     return many || std::uint64_t{options.size.width} * options.size.height *
                            options.samples.value_or(kSamples) >=
-                       kSamples;
+                       kWorthIt;
 }
 
 }  // namespace
