@@ -109,6 +109,9 @@ void Averager::fit(VkExtent2D extent) {
     bytes_ = make_image(device_, {.format = VK_FORMAT_R8G8B8A8_UNORM,
                                   .extent = extent,
                                   .usage = kStored | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    device_.name(frame_.handle.get(), "frame");
+    device_.name(mean_.handle.get(), "mean of frames");
+    device_.name(bytes_.handle.get(), "bytes of the picture");
     const std::array views{frame_.view.get(), mean_.view.get(), bytes_.view.get()};
     std::array<VkDescriptorImageInfo, views.size()> images;
     std::array<VkWriteDescriptorSet, views.size()> writes;

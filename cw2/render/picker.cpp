@@ -149,6 +149,7 @@ void Picker::fit(VkExtent2D extent) {
         device_, {.format = kFormat,
                   .extent = extent,
                   .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    device_.name(image_.handle.get(), "picked pixels");
     extent_ = extent;
 }
 

@@ -250,6 +250,7 @@ Uploader::Uploader(const Device& device)
           make_buffer(device, kStagingBytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::upload)),
       pool_(make_command_pool(device)),
       commands_(allocate_commands(device, pool_.get())) {
+    device_.name(staging_.handle.get(), "staging");
     begin_commands(commands_);
 }
 
