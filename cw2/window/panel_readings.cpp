@@ -62,7 +62,7 @@ void pick_section(const PanelFacts& facts) {
     reading("position", vector(pick.position));
     reading("normal n", direction(pick.normal));
     reading("base colour", vector(pick.base_color));
-    reading("of the vertex", vector(pick.vertex_color));
+    reading("vertex colour", vector(pick.vertex_color));
     reading("emission", vector(pick.emission));
     if (pick.unlit) reading("", "unlit");
     reading("roughness", number(pick.roughness));

@@ -100,7 +100,7 @@ check_switches_views() {
     press 1
     wait_until title_has " - shaded"
     press shift+v
-    wait_until title_has " - alpha-mask"
+    wait_until title_has " - vertex-color"
     press v
     wait_until title_has " - shaded"
     # With control these are no commands.
@@ -429,7 +429,7 @@ check_reads_what_has_changed_while_the_panel_was_hidden() {
 # A copy of the sources, and in `edited` the path of a shader in it.
 copy_sources() {
     mkdir "$work/sources"
-    cp -r "$sources/shaders" "$sources/mesh-format" "$work/sources/"
+    cp -r "$sources/shaders" "$sources/mesh-format" "$sources/common" "$work/sources/"
     edited=$work/sources/shaders/opaque.frag
 }
 
@@ -448,7 +448,7 @@ check_reloads_shaders() {
     take_picture
     expect_same "$start" "$picture"
 
-    sed -i 's/view_color(1\.0)/1.0 - &/' "$edited"
+    sed -i 's/view_color(1\.0, vec3(0\.0))/1.0 - &/' "$edited"
     press F5
     take_picture
     expect_different "$start" "$picture"
