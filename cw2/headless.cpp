@@ -190,8 +190,9 @@ struct Studio {
         Saver saver(options.size, target.png());
         std::optional<FrameProgress> progress(range.size());
         for (std::uint32_t frame = range.first; frame <= range.last; ++frame) {
-            const FrameSettings now = at_frame(settings, options.orbit.value_or(Orbit::camera),
-                                               frame, range.count, scene.bounds());
+            const FrameSettings now =
+                at_frame(settings, options.orbit.value_or(Orbit::camera), frame, range.count,
+                         scene.bounds(), options.orbit_axis);
             const Clock::time_point start = Clock::now();
             target.render(scene, now, [](std::uint32_t) {});
             if (frame == range.first) timings.first_frame = milliseconds_since(start);
@@ -230,7 +231,8 @@ FrameSettings settings_for(std::optional<ImageKind> kind, const Options& options
         settings.exposure = 0.0f;
         settings.false_color.reset();
     }
-    settings.light.position = orbit(settings.light.position, scene.bounds().center, options.time);
+    settings.light.position =
+        orbit(settings.light.position, scene.bounds().center, options.time, options.orbit_axis);
     return settings;
 }
 

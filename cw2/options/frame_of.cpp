@@ -55,7 +55,8 @@ FrameSettings frame_settings(const Options& options, const Bounds& bounds, float
     settings.light = {options.light_position ? from_user(*options.light_position, bounds)
                                              : default_light_position(bounds, settings.camera),
                       options.light_color.value_or(glm::vec3(1.0f)), options.ambient};
-    settings.materials = {options.roughness, options.metalness, options.normal_strength};
+    settings.materials = {options.roughness, options.metalness, options.normal_strength,
+                          options.two_sided};
     settings.background = options.background;
     return settings;
 }

@@ -109,6 +109,12 @@ bool read_value(std::string_view text, Encoding& encoding) {
     return text == "linear" || text == "srgb";
 }
 
+bool read_value(std::string_view text, Axis& axis) {
+    const std::size_t index = std::string_view("xyz").find(text);
+    axis = static_cast<Axis>(index % 3);
+    return text.size() == 1 && index != std::string_view::npos;
+}
+
 bool read_value(std::string_view text, Orbit& orbit) {
     orbit = text == "light" ? Orbit::light : Orbit::camera;
     return text == "light" || text == "camera";
@@ -158,6 +164,9 @@ std::string toml_of(const PixelPlace& pixel) {
 }
 std::string toml_of(Encoding encoding) {
     return encoding == Encoding::linear ? "\"linear\"" : "\"srgb\"";
+}
+std::string toml_of(Axis axis) {
+    return fmt::format("\"{}\"", "xyz"[static_cast<int>(axis)]);
 }
 std::string toml_of(Orbit orbit) {
     return orbit == Orbit::light ? "\"light\"" : "\"camera\"";
@@ -239,8 +248,18 @@ Setting background_setting() {
 }
 
 template <typename T>
-std::function<bool(const std::optional<T>&)> between(T low, T high) {
-    return [=](const std::optional<T>& value) { return *value >= low && *value <= high; };
+std::function<bool(const T&)> in(const Range<T>& range) {
+    return [=](const T& value) { return range.has(value); };
+}
+
+template <typename T>
+std::function<bool(const std::optional<T>&)> in_optional(const Range<T>& range) {
+    return [=](const std::optional<T>& value) { return range.has(*value); };
+}
+
+template <typename T>
+std::string form_of(const Range<T>& range) {
+    return fmt::format("{}..{}", range.low, range.high);
 }
 
 }  // namespace
@@ -248,7 +267,10 @@ std::function<bool(const std::optional<T>&)> between(T low, T high) {
 std::vector<Setting> all_settings() {
     using O = Options;
     return {
-        value("scene", "SCENE", "a .cw2mesh file; .obj, .gltf and .glb are baked first", &O::scene),
+        value("scene", "SCENE",
+              "a .cw2mesh file; .obj, .gltf and .glb are baked first; the window goes through "
+              "several",
+              &O::scene),
         up_setting(),
         flag("strict", "a warning of the bake is an error", &O::strict),
         value("output", "FILE.png|FILE.exr", "write a picture and end", &O::output),
@@ -257,12 +279,13 @@ std::vector<Setting> all_settings() {
         value("split", "LEFT,RIGHT",
               "two views side by side; VIEW:no-normal-map and VIEW:no-alpha-mask are sides, too",
               &O::split),
-        value<float>("divider", "FRACTION", "where the right side begins, 0 to 1 [0.5]",
-                     &O::divider, [](const float& x) { return x >= 0.0f && x <= 1.0f; }),
+        value("divider", form_of(kDividerRange),
+              "where the right side begins, in parts of the width [0.5]", &O::divider,
+              in(kDividerRange)),
         value("exposure", "STOPS",
               "multiplies what a PNG or the window shows by 2^STOPS [1.65 for shaded, which makes "
               "white paper white; else 0]",
-              &O::exposure, between(-64.0f, 64.0f)),
+              &O::exposure, in_optional(kExposureRange)),
         value("false-color", "auto|LOW,HIGH",
               "shows luminance as colours, by its logarithm if LOW > 0; auto: the view's range",
               &O::false_color),
@@ -271,8 +294,10 @@ std::vector<Setting> all_settings() {
               &O::camera_position),
         value("camera-target", "X,Y,Z", "where it looks [the file's, else the scene's centre]",
               &O::camera_target),
-        value("fov", "DEGREES", "vertical field of view, 1 to 179 [the file's, else 60]",
-              &O::vertical_fov, between(1.0f, 179.0f)),
+        value("fov", "DEGREES",
+              fmt::format("vertical field of view, {} to {} [the file's, else 60]", kFovRange.low,
+                          kFovRange.high),
+              &O::vertical_fov, in_optional(kFovRange)),
         value("light-position", "X,Y,Z",
               "where the light's orbit starts [the file's, else over the camera's left shoulder]",
               &O::light_position),
@@ -282,24 +307,28 @@ std::vector<Setting> all_settings() {
         value("encoding", "srgb|linear",
               "of a PNG's values; linear: a value of 128 / 255 is the byte 128 [srgb]",
               &O::encoding),
-        value("time", "SECONDS", "instant of the light's orbit, 1 rad/s about z [0]", &O::time),
-        value("roughness", "0..1", "roughness of every material [its own]", &O::roughness,
-              between(0.0f, 1.0f)),
-        value("metalness", "0..1", "metalness of every material [its own]", &O::metalness,
-              between(0.0f, 1.0f)),
-        value<float>("normal-strength", "0..10", "factor on the slopes of all normal maps [1]",
-                     &O::normal_strength,
-                     [](const float& factor) { return factor >= 0.0f && factor <= 10.0f; }),
+        value("time", "SECONDS", "instant of the light's orbit, 1 rad/s [0]", &O::time),
+        value("orbit-axis", "x|y|z", "axis that the light's orbit is about [z]", &O::orbit_axis),
+        value("roughness", form_of(kOverrideRange), "roughness of every material [its own]",
+              &O::roughness, in_optional(kOverrideRange)),
+        value("metalness", form_of(kOverrideRange), "metalness of every material [its own]",
+              &O::metalness, in_optional(kOverrideRange)),
+        value("normal-strength", form_of(kNormalStrengthRange),
+              "factor on the slopes of all normal maps [1]", &O::normal_strength,
+              in(kNormalStrengthRange)),
         flag("no-normal-map", "shade with the vertex normals", &O::normal_map, false),
         flag("no-alpha-mask", "draw what alpha masks cut away", &O::alpha_mask, false),
+        flag("two-sided",
+             "turn the normals of back faces to the camera (an OBJ's stay as they are)",
+             &O::two_sided),
         value<std::optional<std::uint32_t>>(
             "samples", "1|4|16|64|256", "frames that a picture is the average of [4]", &O::samples,
             [](const std::optional<std::uint32_t>& n) {
                 return *n <= 256 && std::has_single_bit(*n) && std::countr_zero(*n) % 2 == 0;
             }),
-        value("anisotropy", "1..16",
+        value("anisotropy", form_of(kAnisotropyRange),
               "largest anisotropy of texture filtering [16 on GPUs, 1 on CPUs]", &O::anisotropy,
-              between<std::uint32_t>(1, 16)),
+              in_optional(kAnisotropyRange)),
         value("device", "INDEX|NAME", "index or part of the name [the fastest kind]", &O::device),
         flag("list-devices", "print the Vulkan devices and end", &O::list_devices),
         flag("list-views", "print the views and end", &O::list_views),
@@ -314,9 +343,8 @@ std::vector<Setting> all_settings() {
               "print what shades that pixel as JSON, with no window [0,0 is the upper left]",
               &O::pixel),
         value("stats", "FILE.json", "write timings and counts as JSON (with --output)", &O::stats),
-        value<std::uint32_t>(
-            "bench", "FRAMES", "draw N more frames and print their times (with --output)",
-            &O::bench_frames, [](const std::uint32_t& n) { return n <= 1'000'000; }),
+        value("bench", "FRAMES", "draw N more frames and print their times (with --output)",
+              &O::bench_frames, in(kBenchRange)),
     };
 }
 

@@ -11,6 +11,7 @@
 #include "common/file_kind.h"
 #include "common/io.h"
 #include "cw2/options/config.h"
+#include "cw2/options/controls.h"
 #include "cw2/options/option_table.h"
 #include "cw2/render/image_file.h"
 
@@ -33,7 +34,14 @@ void add_to(CLI::App& app, const Setting& setting, Options& options) {
         take(setting, text, "--" + setting.name, options);
     };
     const std::string name = setting.command_line_name();
-    if (setting.form.empty()) {
+    if (setting.name == "scene") {
+        const auto take_files = [&options, take_over](const std::vector<std::string>& paths) {
+            take_over(paths.front());
+            if (paths.size() > 1) options.files.assign(paths.begin(), paths.end());
+        };
+        app.add_option_function<std::vector<std::string>>(name, take_files, setting.description)
+            ->type_name(setting.form);
+    } else if (setting.form.empty()) {
         app.add_flag_function(
             name, [take_over](std::int64_t count) { take_over(count > 0 ? "true" : "false"); },
             setting.description);
@@ -66,6 +74,9 @@ void require_sense(const Options& options) {
     if (options.scene.empty()) throw UsageError("no scene is given; see --help");
     if ((options.z_up || options.strict) && !is_source(options.scene))
         throw UsageError("--up and --strict are for scenes that are not baked yet");
+    if (options.output && options.files.size() > 1) {
+        throw UsageError("--output takes one scene, not several");
+    }
     if (options.output && !image_kind(*options.output)) {
         throw UsageError(
             fmt::format("--output: '{}' ends in neither .png nor .exr", options.output->string()));
@@ -118,6 +129,7 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
         "with no "
         "display.",
         "cw2");
+    app.footer(controls_text());
     app.set_version_flag("--version", "cw2 " CW2_VERSION);
     for (const Setting& setting : settings) add_to(app, setting, options);
     std::optional<std::filesystem::path> config;

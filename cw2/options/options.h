@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cw2/options/config.h"
 #include "cw2/render/frame_settings.h"
@@ -35,35 +36,53 @@ enum class Encoding { srgb, linear };
 /// Samples a pixel, where nobody asks for others.
 inline constexpr std::uint32_t kSamples = 4;
 
+/// The values that an option takes, both ends included.
+template <typename T>
+struct Range {
+    T low;
+    T high;
+    bool has(T value) const { return value >= low && value <= high; }
+};
+inline constexpr Range kDividerRange{0.0f, 1.0f};
+inline constexpr Range kExposureRange{-64.0f, 64.0f};
+inline constexpr Range kFovRange{1.0f, 179.0f};
+inline constexpr Range kOverrideRange{0.0f, 1.0f};  ///< of roughness and metalness
+inline constexpr Range kNormalStrengthRange{0.0f, 10.0f};
+inline constexpr Range kAnisotropyRange{1u, 16u};
+inline constexpr Range kBenchRange{0u, 1'000'000u};
+
 inline constexpr float kVerticalFov = 60.0f;  ///< degrees, where nobody asks for another
 
 struct Options {
     std::filesystem::path scene;
+    std::vector<std::filesystem::path> files;  ///< where there are several; `scene` is the first
     bool z_up = false;    ///< of a scene that is not baked yet: its up axis is +Z
     bool strict = false;  ///< the same: a warning of the bake is an error
     std::optional<std::filesystem::path> output;  ///< none: open a window, but for `pixel`
     PictureSize size;
     View view = interop::kViewShaded;
     std::optional<std::array<Side, 2>> split;  ///< in place of `view`
-    float divider = 0.5f;                      ///< in [0, 1]
-    std::optional<float> exposure;             ///< stops, in [-64, 64]; none: by the view
+    float divider = 0.5f;                      ///< of the width, in kDividerRange
+    std::optional<float> exposure;             ///< stops, in kExposureRange; none: by the view
     std::optional<FalseColor> false_color;
     std::optional<std::uint32_t> samples;       ///< 1, 4, 16, 64 or 256; none: kSamples
     std::optional<glm::dvec3> camera_position;  ///< this and the next are in the user's coordinates
     std::optional<glm::dvec3> camera_target;
-    std::optional<float> vertical_fov;         ///< degrees, in (0, 180); none: kVerticalFov
+    std::optional<float> vertical_fov;         ///< degrees, in kFovRange; none: kVerticalFov
     std::optional<glm::dvec3> light_position;  ///< the same
     std::optional<glm::vec3> light_color;      ///< none: 1, 1, 1
     glm::vec3 ambient{0.02f};
     std::optional<glm::vec3> background{glm::vec3(0.1f)};  ///< linear; none: transparent
     Encoding encoding = Encoding::srgb;                    ///< of PNGs
     double time = 0.0;                                     ///< seconds of the light's orbit
-    std::optional<float> roughness;  ///< of every material, in [0, 1]; none: its own
+    Axis orbit_axis = Axis::z;                             ///< that it goes about
+    std::optional<float> roughness;  ///< of every material, in kOverrideRange; none: its own
     std::optional<float> metalness;  ///< the same
-    float normal_strength = 1.0f;    ///< a factor on the slopes of all normal maps, in [0, 10]
+    float normal_strength = 1.0f;    ///< a factor on all slopes, in kNormalStrengthRange
     bool normal_map = true;
     bool alpha_mask = true;
-    std::optional<std::uint32_t> anisotropy;  ///< 1 to 16; none: 16 on GPUs, 1 on CPUs
+    bool two_sided = false;                   ///< turn the normals of back faces to the camera
+    std::optional<std::uint32_t> anisotropy;  ///< in kAnisotropyRange; none: 16 on GPUs, 1 on CPUs
     std::optional<std::string> device;
     bool list_devices = false;
     bool list_views = false;
@@ -72,7 +91,7 @@ struct Options {
     std::optional<Orbit> orbit;        ///< in `frames`; none: the camera's
     std::optional<PixelPlace> pixel;   ///< whose numbers are printed
     std::optional<std::filesystem::path> stats;
-    std::uint32_t bench_frames = 0;  ///< further frames to time
+    std::uint32_t bench_frames = 0;  ///< further frames to time, in kBenchRange
 
     bool operator==(const Options&) const = default;
 };

@@ -59,29 +59,33 @@ CameraAxes axes_of(const Camera& camera) {
     return {right, glm::cross(back, right), back};
 }
 
-Camera default_camera(const Bounds& bounds, float vertical_fov, float aspect) {
+Camera framed(std::span<const glm::vec3> vertices, const glm::vec3& target, const glm::dvec3& back,
+              double nearest, float vertical_fov, float aspect) {
     constexpr double kInside = 0.95;
-    const glm::dvec3 center(bounds.center);
-    const CameraAxes axes = axes_of({{1.0f, 0.5f, 1.0f}, glm::vec3(0.0f), vertical_fov});
+    const glm::dvec3 center(target);
+    const CameraAxes axes = axes_of({glm::vec3(back), glm::vec3(0.0f), vertical_fov});
     const double high = kInside * std::tan(0.5 * double{vertical_fov});
     const double wide = high * double{aspect};
-    // At distance d a point is in view where |x| <= wide (d - z), |y| <= high (d - z), and, with
-    // something to spare, where it lies beyond the near plane.
-    const double beyond = 2.0 * double{near_distance(bounds)};
+    // At distance d a point is in view where |x| <= wide (d - z), |y| <= high (d - z).
     using Range = tbb::blocked_range<std::size_t>;
     const double distance = tbb::parallel_reduce(
-        Range(0, bounds.vertices.size(), 16'384), beyond,
+        Range(0, vertices.size(), 16'384), nearest,
         [&](const Range& range, double largest) {
             for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                const glm::dvec3 arm = glm::dvec3(bounds.vertices[i]) - center;
+                const glm::dvec3 arm = glm::dvec3(vertices[i]) - center;
                 const double aside = std::max(std::abs(glm::dot(arm, axes.right)) / wide,
                                               std::abs(glm::dot(arm, axes.up)) / high);
-                largest = std::max(largest, glm::dot(arm, axes.back) + std::max(aside, beyond));
+                largest = std::max(largest, glm::dot(arm, axes.back) + std::max(aside, nearest));
             }
             return largest;
         },
         [](double a, double b) { return std::max(a, b); });
-    return {glm::vec3(center + distance * axes.back), bounds.center, vertical_fov};
+    return {glm::vec3(center + distance * axes.back), target, vertical_fov};
+}
+
+Camera default_camera(const Bounds& bounds, float vertical_fov, float aspect) {
+    return framed(bounds.vertices, bounds.center, {1.0, 0.5, 1.0}, nearest_frame(bounds),
+                  vertical_fov, aspect);
 }
 
 Camera around_target(const Camera& camera, double radians) {
@@ -115,6 +119,11 @@ float near_distance(const Bounds& bounds) {
     return 1e-4f * bounds.radius;
 }
 
+double nearest_frame(const Bounds& bounds) {
+    // Something to spare beyond the near plane.
+    return 2.0 * double{near_distance(bounds)};
+}
+
 glm::vec3 default_light_position(const Bounds& bounds, const Camera& camera) {
     const CameraAxes axes = axes_of(camera);
     const glm::dvec3 direction =
@@ -122,11 +131,15 @@ glm::vec3 default_light_position(const Bounds& bounds, const Camera& camera) {
     return glm::vec3(glm::dvec3(bounds.center) + 4.0 * double{bounds.radius} * direction);
 }
 
-glm::vec3 orbit(const glm::vec3& start, const glm::vec3& center, double seconds) {
+glm::vec3 orbit(const glm::vec3& start, const glm::vec3& center, double seconds, Axis axis) {
     const double sine = std::sin(seconds);
     const double cosine = std::cos(seconds);
+    const int from = (static_cast<int>(axis) + 1) % 3;
+    const int towards = (static_cast<int>(axis) + 2) % 3;
     const glm::dvec3 arm = glm::dvec3(start) - glm::dvec3(center);
-    const glm::dvec3 turned(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y, arm.z);
+    glm::dvec3 turned = arm;
+    turned[from] = cosine * arm[from] - sine * arm[towards];
+    turned[towards] = sine * arm[from] + cosine * arm[towards];
     return glm::vec3(glm::dvec3(center) + turned);
 }
 

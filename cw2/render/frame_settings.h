@@ -16,6 +16,7 @@ struct MaterialOverrides {
     std::optional<float> roughness;  ///< in [0, 1], in place of factor and texture
     std::optional<float> metalness;  ///< the same
     float normal_strength = 1.0f;    ///< a factor on the slopes of all normal maps
+    bool two_sided = false;          ///< the normals of back faces turn to the camera
 };
 
 /// That a frame shows the same scene in two ways, side by side.

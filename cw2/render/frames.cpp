@@ -64,10 +64,10 @@ std::optional<std::string> frame_name(std::string_view pattern, std::uint32_t fr
 }
 
 FrameSettings at_frame(FrameSettings start, Orbit what, std::uint32_t frame, std::uint32_t count,
-                       const Bounds& bounds) {
+                       const Bounds& bounds, Axis light_axis) {
     const double angle = 2.0 * std::numbers::pi * frame / count;
     if (what == Orbit::light) {
-        start.light.position = orbit(start.light.position, bounds.center, angle);
+        start.light.position = orbit(start.light.position, bounds.center, angle, light_axis);
     } else {
         start.camera = around_target(start.camera, angle);
     }

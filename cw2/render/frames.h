@@ -35,6 +35,6 @@ std::optional<std::string> frame_name(std::string_view pattern, std::uint32_t fr
 /// A frame of a turn that starts with `start`; it depends on no other frame. The camera goes
 /// around the vertical through its target, the light on its orbit (see orbit()).
 FrameSettings at_frame(FrameSettings start, Orbit orbit, std::uint32_t frame, std::uint32_t count,
-                       const Bounds& bounds);
+                       const Bounds& bounds, Axis light_axis = Axis::z);
 
 }  // namespace cw2

@@ -85,6 +85,7 @@ interop::DrawConstants draw_constants(const Draw& draw, const MaterialOverrides&
     constants.roughness = materials.roughness.value_or(constants.roughness);
     constants.metalness = materials.metalness.value_or(constants.metalness);
     constants.normal_scale *= materials.normal_strength;
+    if (materials.two_sided) constants.back_normals = -1.0f;
     return constants;
 }
 

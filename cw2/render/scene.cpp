@@ -165,7 +165,8 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
                           .cull_back = (material.flags & mesh_format::kCullBack) != 0,
                           .material = sets[mesh.material],
                           .vertex_offset = mesh.vertex_offset,
-                          .index_offset = mesh.first_index * sizeof(std::uint16_t)});
+                          .index_offset = mesh.first_index * sizeof(std::uint16_t),
+                          .vertex_count = mesh.vertex_count});
     }
 }
 
@@ -252,6 +253,17 @@ VkDeviceSize Scene::memory_bytes() const {
     VkDeviceSize bytes = vertices_.memory.bytes() + indices_.memory.bytes();
     for (const Memory& memory : texture_memory_) bytes += memory.bytes();
     return bytes;
+}
+
+std::vector<glm::vec3> Scene::positions_of(std::uint32_t material) const {
+    std::vector<glm::vec3> positions;
+    auto first = positions_.begin();
+    for (const Draw& draw : draws_) {
+        const auto last = first + draw.vertex_count;
+        if (draw.constants.material == material) positions.insert(positions.end(), first, last);
+        first = last;
+    }
+    return positions;
 }
 
 std::uint64_t Scene::triangle_count() const {

@@ -30,6 +30,7 @@ struct Draw {
     VkDescriptorSet material;
     VkDeviceSize vertex_offset;  ///< bytes
     VkDeviceSize index_offset;   ///< bytes
+    std::uint32_t vertex_count;
 };
 
 /// Triangles that are culled and drawn as one; see mesh_format::ChunkRecord.
@@ -63,6 +64,8 @@ class Scene {
     VkBuffer indices() const { return indices_.handle.get(); }
     /// Indexed by DrawConstants::material.
     const std::vector<std::string>& material_names() const { return material_names_; }
+    /// Where the vertices of a material are.
+    std::vector<glm::vec3> positions_of(std::uint32_t material) const;
     std::uint64_t triangle_count() const;
     /// Device memory that geometry and textures take.
     VkDeviceSize memory_bytes() const;
@@ -81,7 +84,7 @@ class Scene {
     void write_material_set(const Device& device, VkDescriptorSet set,
                             const mesh_format::MaterialRecord& material) const;
 
-    std::vector<glm::vec3> positions_;
+    std::vector<glm::vec3> positions_;  ///< of all vertices, draw after draw
     Bounds bounds_;
     SceneStart start_;
     Buffer vertices_;

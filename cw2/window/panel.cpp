@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "cw2/options/controls.h"
 #include "cw2/render/legend.h"
 #include "cw2/render/view.h"
 #include "cw2/window/panel_widgets.h"
@@ -23,27 +24,6 @@ constexpr ImGuiColorEditFlags kColor =
     ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_NoLabel;
 constexpr float kLargest = 1e6f;  // value that can be entered
 
-struct KeyHelp {
-    const char* keys;
-    const char* what;
-};
-constexpr std::array kKeys{
-    KeyHelp{"Tab", "shows and hides this panel"},
-    KeyHelp{"W A S D, E Q", "move the camera, up and down"},
-    KeyHelp{"Shift, Ctrl", "faster, slower"},
-    KeyHelp{"left button", "reads a pixel; drags the divider"},
-    KeyHelp{"right button", "turns the camera"},
-    KeyHelp{"Space", "light's orbit on and off"},
-    KeyHelp{"1 to 9, V, Shift+V", "views"},
-    KeyHelp{"N, M", "normal maps, alpha masks"},
-    KeyHelp{"R", "resets camera and light"},
-    KeyHelp{"Ctrl+C", "copies camera and light as options"},
-    KeyHelp{"F2, S in here", "saves the settings"},
-    KeyHelp{"F12, Shift+F12", "saves the picture, the window"},
-    KeyHelp{"F5, Ctrl+R", "reloads the shaders"},
-    KeyHelp{"Escape", "ends"},
-};
-
 /// A colour that stays finite and not negative.
 void color(const char* name, const char* id, glm::vec3& value) {
     label(name);
@@ -54,12 +34,26 @@ void color(const char* name, const char* id, glm::vec3& value) {
     }
 }
 
+/// The key that shows a view; empty where only the next and the one before can be asked for.
+std::string key_of(View view) {
+    if (view < 9) return std::to_string(view + 1);
+    return view < 18 ? "Shift+" + std::to_string(view - 8) : std::string();
+}
+
+void describe_if_hovered(View view) {
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", kViews[view].description.data());
+}
+
 void view_combo(const char* id, View& shown) {
-    if (!ImGui::BeginCombo(id, kViews[shown].name.data(), ImGuiComboFlags_HeightLargest)) return;
+    const bool open =
+        ImGui::BeginCombo(id, kViews[shown].name.data(), ImGuiComboFlags_HeightLargest);
+    describe_if_hovered(shown);
+    if (!open) return;
     for (View view = 0; view < kViews.size(); ++view) {
         if (ImGui::Selectable(kViews[view].name.data(), view == shown)) shown = view;
-        ImGui::SameLine(9.0f * ImGui::GetFontSize());
-        ImGui::TextDisabled("%s", kViews[view].description.data());
+        describe_if_hovered(view);
+        ImGui::SameLine(11.0f * ImGui::GetFontSize());
+        ImGui::TextDisabled("%s", key_of(view).c_str());
     }
     ImGui::EndCombo();
 }
@@ -89,8 +83,7 @@ void split_rows(Options& options) {
     }
     if (!options.split) return;
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(-1.0f);
-    ImGui::SliderFloat("##divider", &options.divider, 0.0f, 1.0f, "divider at %.3f", kClamp);
+    slider("divider", options.divider, kDividerRange, "%.3f");
     side_row("left", options.split->front());
     side_row("right", options.split->back());
 }
@@ -191,7 +184,8 @@ void exposure_row(Options& options) {
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0f);
     if (options.exposure) {
-        ImGui::SliderFloat("##exposure", &*options.exposure, -10.0f, 10.0f, "%+.1f stops", kClamp);
+        ImGui::DragFloat("##exposure", &*options.exposure, 0.02f, kExposureRange.low,
+                         kExposureRange.high, "%+.2f stops", kClamp);
     } else {
         std::string stops = fmt::format("{:+.2f}", kViews[view].exposure);
         if (options.split) {
@@ -211,16 +205,18 @@ void light_section(PanelState& state, const Bounds& bounds) {
     if (!section("Light")) return;
     Options& options = state.options;
     label("position");
-    glm::dvec3 position = to_user(
-        orbit(from_user(*options.light_position, bounds), bounds.center, options.time), bounds);
+    const auto after = [&](const glm::dvec3& start, double seconds) {
+        return to_user(orbit(from_user(start, bounds), bounds.center, seconds, options.orbit_axis),
+                       bounds);
+    };
+    glm::dvec3 position = after(*options.light_position, options.time);
     // Coordinates that can be entered, by the scene's.
     const double largest =
         1e6 * (glm::length(to_user(bounds.center, bounds)) + double{bounds.radius});
     const double smallest = -largest;
     if (ImGui::DragScalarN("##light", ImGuiDataType_Double, glm::value_ptr(position), 3,
-                           0.005f * bounds.radius, &smallest, &largest, "%.6g", kClamp)) {
-        options.light_position =
-            to_user(orbit(from_user(position, bounds), bounds.center, -options.time), bounds);
+                           0.005f * bounds.radius, &smallest, &largest, "%.5g", kClamp)) {
+        options.light_position = after(position, -options.time);
     }
     label("orbit");
     ImGui::Checkbox("##moves", &state.light_moves);
@@ -230,22 +226,46 @@ void light_section(PanelState& state, const Bounds& bounds) {
     constexpr double kBack = -kLongest;
     ImGui::DragScalar("##time", ImGuiDataType_Double, &options.time, 0.01f, &kBack, &kLongest,
                       "%.2f s of 6.28", kClamp);
+    label("orbit about");
+    for (const Axis axis : {Axis::x, Axis::y, Axis::z}) {
+        const char name[] = {"xyz"[static_cast<int>(axis)], '\0'};
+        if (ImGui::RadioButton(name, options.orbit_axis == axis) && options.orbit_axis != axis) {
+            // It goes on from where it is.
+            options.orbit_axis = axis;
+            options.light_position = after(position, -options.time);
+        }
+        ImGui::SameLine();
+    }
+    ImGui::NewLine();
     color("colour", "##color", *options.light_color);
     color("ambient", "##ambient", options.ambient);
+}
+
+/// One of `columns` buttons in a row; what it does, and its keys, are in the table of controls.
+void button(const char* name, CommandKind kind, int columns, std::vector<Command>& commands) {
+    const float gaps = static_cast<float>(columns - 1) * ImGui::GetStyle().ItemSpacing.x;
+    const float whole = ImGui::GetWindowContentRegionMax().x - ImGui::GetWindowContentRegionMin().x;
+    const ImVec2 size{std::floor((whole - gaps) / static_cast<float>(columns)), 0.0f};
+    if (ImGui::Button(name, size)) commands.push_back({kind});
+    if (!ImGui::IsItemHovered()) return;
+    const auto control = std::ranges::find(kControls, kind, &Control::command);
+    ImGui::SetTooltip("%s: %s", control->input.data(), control->does.data());
 }
 
 void camera_section(Options& options, std::vector<Command>& commands) {
     if (!section("Camera")) return;
     label("field of view");
-    ImGui::SliderFloat("##fov", &*options.vertical_fov, 1.0f, 179.0f, "%.1f\xc2\xb0", kClamp);
+    slider("fov", *options.vertical_fov, kFovRange, "%.1f\xc2\xb0");
     const auto vector = [](const glm::dvec3& v) {
         return fmt::format("{:.6g}, {:.6g}, {:.6g}", v.x, v.y, v.z);
     };
     reading("at", vector(*options.camera_position));
     reading("towards", vector(*options.camera_target));
-    if (ImGui::Button("Copy as options")) commands.push_back({CommandKind::copy_camera});
+    button("All in view", CommandKind::frame_scene, 3, commands);
     ImGui::SameLine();
-    if (ImGui::Button("Reset with light")) commands.push_back({CommandKind::reset});
+    button("Reset", CommandKind::reset, 3, commands);
+    ImGui::SameLine();
+    button("Copy", CommandKind::copy_camera, 3, commands);
 }
 
 /// A number that is every material's where the box is ticked.
@@ -259,7 +279,7 @@ void override_row(const char* name, const char* id, std::optional<float>& value)
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0f);
     if (value) {
-        ImGui::SliderFloat("##value", &*value, 0.0f, 1.0f, "%.3f", kClamp);
+        slider("value", *value, kOverrideRange, "%.3f");
     } else {
         ImGui::TextDisabled("each its own");
     }
@@ -273,40 +293,31 @@ void material_section(Options& options) {
     label("normal maps");
     ImGui::Checkbox("##normal_map", &options.normal_map);
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(-1.0f);
-    ImGui::SliderFloat("##normal_strength", &options.normal_strength, 0.0f, 4.0f, "slopes x %.2f",
-                       kClamp);
+    slider("normal strength", options.normal_strength, kNormalStrengthRange, "x %.2f");
     label("alpha masks");
     ImGui::Checkbox("##alpha_mask", &options.alpha_mask);
+    label("two-sided");
+    ImGui::Checkbox("##two_sided", &options.two_sided);
 }
 
 void file_buttons(std::vector<Command>& commands) {
-    const auto button = [&](const char* name, CommandKind kind, const char* tip) {
-        if (ImGui::Button(name)) commands.push_back({kind});
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
-    };
-    button("Save settings", CommandKind::save_settings, "for --config; S or F2");
+    button("Open...", CommandKind::open, 2, commands);
     ImGui::SameLine();
-    button("Save picture", CommandKind::save_picture, "without the panel; F12");
+    button("Save picture", CommandKind::save_picture, 2, commands);
+    button("Save settings", CommandKind::save_settings, 2, commands);
     ImGui::SameLine();
-    button("Reload shaders", CommandKind::reload_shaders, "from their sources; F5");
-}
-
-void key_section() {
-    if (!section("Keys", false)) return;
-    for (const KeyHelp& key : kKeys) {
-        ImGui::TextUnformatted(key.keys);
-        ImGui::SameLine(ImGui::GetFontSize() * 10.5f);
-        ImGui::TextDisabled("%s", key.what);
-    }
+    button("Reload shaders", CommandKind::reload_shaders, 2, commands);
+    button("All keys", CommandKind::toggle_help, 1, commands);
 }
 
 }  // namespace
 
 std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state) {
     std::vector<Command> commands;
-    draw_readings(facts);
-    begin_window("cw2", 8.0f * facts.scale, 344.0f * facts.scale, facts.scale);
+    const bool apart = readings_are_apart(facts.scale);
+    if (apart) draw_readings(facts);
+    begin_window("cw2", Edge::left, facts.scale);
+    if (!apart && facts.pick) pixel_section(facts);
     view_section(state.options);
     value_section(state.options);
     light_section(state, facts.bounds);
@@ -323,7 +334,7 @@ std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state) {
             dim_text(facts.message);
         }
     }
-    key_section();
+    if (!apart) frame_section(facts, false);
     ImGui::End();
     return commands;
 }
@@ -335,6 +346,9 @@ std::string camera_flags(const Options& options) {
                     vector(*options.camera_position), vector(*options.camera_target),
                     *options.vertical_fov, vector(*options.light_position));
     if (options.time != 0.0) flags += fmt::format(" --time {}", options.time);
+    if (options.orbit_axis != Axis::z) {
+        flags += fmt::format(" --orbit-axis {}", "xyz"[static_cast<int>(options.orbit_axis)]);
+    }
     return flags;
 }
 

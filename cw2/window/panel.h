@@ -38,8 +38,11 @@ struct PanelState {
     bool light_moves;
 };
 
-/// Draws what can be read off.
+/// Draws what can be read off, in a window of its own.
 void draw_readings(const PanelFacts& facts);
+/// Its parts: of what a pixel shows, and of what a frame costs.
+void pixel_section(const PanelFacts& facts);
+void frame_section(const PanelFacts& facts, bool open);
 
 /// Draws all of it, the readings too; gives the commands of the buttons pressed.
 std::vector<Command> draw_panel(const PanelFacts& facts, PanelState& state);

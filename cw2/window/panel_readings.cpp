@@ -27,8 +27,10 @@ std::string milliseconds(const std::optional<double>& time) {
     return time ? fmt::format("{:.2f} ms", *time) : std::string("-");
 }
 
-void frame_section(const PanelFacts& facts) {
-    if (!section("Frame")) return;
+}  // namespace
+
+void frame_section(const PanelFacts& facts, bool open) {
+    if (!section("Frame", open)) return;
     dim_text(facts.device);
     reading("size", fmt::format("{} x {}", facts.extent.width, facts.extent.height));
     reading("CPU", milliseconds(facts.times.cpu));
@@ -43,7 +45,28 @@ void frame_section(const PanelFacts& facts) {
     reading("", fmt::format("{:.1f} MiB images", mebibytes(facts.image_bytes)));
 }
 
-void pick_section(const PanelFacts& facts) {
+namespace {
+
+/// A cross-hair in the picture, black and white, so that it is seen on anything.
+void mark(const glm::uvec2& pixel, float size) {
+    const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+    const ImVec2 at{(static_cast<float>(pixel.x) + 0.5f) / scale.x,
+                    (static_cast<float>(pixel.y) + 0.5f) / scale.y};
+    for (const auto& [thickness, ink] : {std::pair{3.0f, IM_COL32_BLACK}, {1.0f, IM_COL32_WHITE}}) {
+        const float width = thickness * size;
+        for (const float side : {-1.0f, 1.0f}) {
+            const float near = 4.0f * side * size, far = 10.0f * side * size;
+            ImDrawList* const list = ImGui::GetBackgroundDrawList();
+            list->AddLine({at.x + near, at.y}, {at.x + far, at.y}, ink, width);
+            list->AddLine({at.x, at.y + near}, {at.x, at.y + far}, ink, width);
+        }
+    }
+}
+
+}  // namespace
+
+void pixel_section(const PanelFacts& facts) {
+    if (facts.pick) mark(facts.pick->pixel, facts.scale);
     if (!section("Pixel")) return;
     if (!facts.pick) {
         dim_text("click the picture to read the numbers of a pixel");
@@ -51,19 +74,20 @@ void pick_section(const PanelFacts& facts) {
     }
     const Pick& pick = *facts.pick;
     const auto number = [](float value) { return fmt::format("{:.4g}", value); };
-    const auto vector = [](const glm::vec3& v) {
-        return fmt::format("{:<8.3g} {:<8.3g} {:.3g}", v.x, v.y, v.z);
-    };
-    const auto direction = [](const glm::vec3& v) {
-        return fmt::format("{:<8.4f} {:<8.4f} {:.4f}", v.x, v.y, v.z);
+    const auto color = [](const char* name, const glm::vec3& v) {
+        readings(name, {fmt::format("{:.3g}", v.x), fmt::format("{:.3g}", v.y),
+                        fmt::format("{:.3g}", v.z)});
     };
     reading("pixel", fmt::format("{}, {}", pick.pixel.x, pick.pixel.y));
     reading("material", facts.picked_material);
-    reading("position", vector(pick.position));
-    reading("normal n", direction(pick.normal));
-    reading("base colour", vector(pick.base_color));
-    reading("vertex colour", vector(pick.vertex_color));
-    reading("emission", vector(pick.emission));
+    reading("position", fmt::format("{:.7g}, {:.7g}, {:.7g}", pick.position.x, pick.position.y,
+                                    pick.position.z));
+    readings("normal n",
+             {fmt::format("{:.4f}", pick.normal.x), fmt::format("{:.4f}", pick.normal.y),
+              fmt::format("{:.4f}", pick.normal.z)});
+    color("base colour", pick.base_color);
+    color("vertex colour", pick.vertex_color);
+    color("emission", pick.emission);
     if (pick.unlit) reading("", "unlit");
     reading("roughness", number(pick.roughness));
     reading("metalness", number(pick.metalness));
@@ -75,33 +99,16 @@ void pick_section(const PanelFacts& facts) {
     ImGui::Separator();
     reading("D", number(pick.distribution));
     reading("G", number(pick.masking));
-    reading("F", vector(pick.fresnel));
-    reading("diffuse", vector(pick.diffuse));
-    reading("specular", vector(pick.specular));
-    reading("shaded", vector(pick.shaded));
-    // A cross-hair in the picture, black and white, so that it is seen on anything.
-    const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
-    const ImVec2 at{(static_cast<float>(pick.pixel.x) + 0.5f) / scale.x,
-                    (static_cast<float>(pick.pixel.y) + 0.5f) / scale.y};
-    for (const auto& [thickness, ink] : {std::pair{3.0f, IM_COL32_BLACK}, {1.0f, IM_COL32_WHITE}}) {
-        const float width = thickness * facts.scale;
-        for (const float side : {-1.0f, 1.0f}) {
-            const float near = 4.0f * side * facts.scale, far = 10.0f * side * facts.scale;
-            ImDrawList* const list = ImGui::GetBackgroundDrawList();
-            list->AddLine({at.x + near, at.y}, {at.x + far, at.y}, ink, width);
-            list->AddLine({at.x, at.y + near}, {at.x, at.y + far}, ink, width);
-        }
-    }
+    color("F", pick.fresnel);
+    color("diffuse", pick.diffuse);
+    color("specular", pick.specular);
+    color("shaded", pick.shaded);
 }
 
-}  // namespace
-
 void draw_readings(const PanelFacts& facts) {
-    const float width = 304.0f * facts.scale;
-    const float margin = 8.0f * facts.scale;
-    begin_window("Readings", ImGui::GetIO().DisplaySize.x - width - margin, width, facts.scale);
-    frame_section(facts);
-    pick_section(facts);
+    begin_window("Readings", Edge::right, facts.scale);
+    frame_section(facts, true);
+    pixel_section(facts);
     ImGui::End();
 }
 

@@ -15,7 +15,9 @@ constexpr std::chrono::milliseconds kPause{250};
 
 }  // namespace
 
-Title::Title(Window& window, std::string scene) : window_(window), scene_(std::move(scene)) {}
+void Title::set_scene(const std::string& name, const std::string& place) {
+    scene_ = place.empty() ? name : fmt::format("{} ({})", name, place);
+}
 
 void Title::set_error(std::string error) {
     error_ = std::move(error);

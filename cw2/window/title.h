@@ -14,8 +14,10 @@ namespace cw2 {
 class Title {
  public:
     /// `window` must outlive this.
-    Title(Window& window, std::string scene);
+    explicit Title(Window& window) : window_(window) {}
 
+    /// The name of the scene, and its place among others or nothing.
+    void set_scene(const std::string& name, const std::string& place);
     /// Empty for none.
     void set_error(std::string error);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "common/srgb.h"
 #include "cw2/vulkan/resources.h"
@@ -14,7 +15,24 @@ namespace cw2 {
 
 namespace {
 
-constexpr float kFontPixels = 13.0f;  // that ImGui's own font is drawn for
+/// Of the package fonts-dejavu-core.
+constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+constexpr float kFontPixels = 14.0f;     // at scale 1
+constexpr float kOwnFontPixels = 13.0f;  // that ImGui's own font is drawn for
+
+/// Letters of the size that the display asks for; ImGui's own where the font is not installed.
+void add_font(float scale) {
+    // Latin, Greek and Cyrillic, for the names of files and materials, and punctuation.
+    static constexpr ImWchar kLetters[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x2044, 0};
+    ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+    if (std::ifstream(kFont).good()) {
+        fonts.AddFontFromFileTTF(kFont, std::round(kFontPixels * scale), nullptr, kLetters);
+        return;
+    }
+    ImFontConfig own;
+    own.SizePixels = std::floor(kOwnFontPixels * scale);
+    fonts.AddFontDefault(&own);
+}
 
 void check_result(VkResult result) {
     check(result, "Dear ImGui");
@@ -63,22 +81,35 @@ Framebuffer make_framebuffer(const Device& device, VkRenderPass pass, VkImageVie
 void set_style(float scale) {
     ImGui::StyleColorsDark();
     ImGuiStyle& style = ImGui::GetStyle();
-    style.WindowRounding = 4.0f;
-    style.FrameRounding = 3.0f;
-    style.GrabRounding = 3.0f;
-    style.WindowPadding = {8.0f, 6.0f};
+    style.WindowRounding = 6.0f;
+    style.FrameRounding = 4.0f;
+    style.PopupRounding = 4.0f;
+    style.GrabRounding = 4.0f;
+    style.ScrollbarRounding = 4.0f;
+    style.WindowBorderSize = 0.0f;
+    style.WindowPadding = {10.0f, 8.0f};
     style.FramePadding = {6.0f, 2.0f};
     style.ItemSpacing = {6.0f, 4.0f};
+    style.ScrollbarSize = 11.0f;
+    style.WindowTitleAlign = {0.02f, 0.5f};
     style.ScaleAllSizes(scale);
-    style.Colors[ImGuiCol_WindowBg] = {0.14f, 0.15f, 0.16f, 1.0f};
-    style.Colors[ImGuiCol_PopupBg] = {0.10f, 0.11f, 0.12f, 1.0f};
-    style.Colors[ImGuiCol_TextDisabled] = {0.65f, 0.66f, 0.68f, 1.0f};
-    for (const ImGuiCol title : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_Header}) {
-        style.Colors[title] = {0.20f, 0.27f, 0.36f, 1.0f};
-    }
-    for (const ImGuiCol frame : {ImGuiCol_FrameBg, ImGuiCol_Button}) {
-        style.Colors[frame] = {0.24f, 0.28f, 0.33f, 1.0f};
-    }
+    const ImVec4 ground{0.13f, 0.13f, 0.14f, 1.0f}, field{0.21f, 0.22f, 0.24f, 1.0f},
+        head{0.18f, 0.19f, 0.21f, 1.0f}, light{0.28f, 0.30f, 0.33f, 1.0f},
+        accent{0.36f, 0.62f, 0.95f, 1.0f};
+    const auto paint = [&](const ImVec4& color, std::initializer_list<ImGuiCol> parts) {
+        for (const ImGuiCol part : parts) style.Colors[part] = color;
+    };
+    paint(ground, {ImGuiCol_WindowBg, ImGuiCol_PopupBg});
+    paint(head, {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed,
+                 ImGuiCol_Header, ImGuiCol_ScrollbarBg});
+    paint(field, {ImGuiCol_FrameBg, ImGuiCol_Button});
+    paint(light, {ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_HeaderHovered,
+                  ImGuiCol_HeaderActive, ImGuiCol_ButtonHovered, ImGuiCol_ButtonActive,
+                  ImGuiCol_ScrollbarGrab, ImGuiCol_Separator});
+    paint(accent, {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive,
+                   ImGuiCol_TextSelectedBg, ImGuiCol_ScrollbarGrabActive});
+    style.Colors[ImGuiCol_Text] = {0.92f, 0.92f, 0.93f, 1.0f};
+    style.Colors[ImGuiCol_TextDisabled] = {0.62f, 0.64f, 0.67f, 1.0f};
     for (ImVec4& color : style.Colors) {
         color = {common::linear_of_srgb(color.x), common::linear_of_srgb(color.y),
                  common::linear_of_srgb(color.z), color.w};
@@ -106,9 +137,7 @@ UiPass::UiPass(GLFWwindow* window, const Instance& instance, const Device& devic
     ImGuiIO& io = ImGui::GetIO();
     // Nothing is written into the user's folder unasked.
     io.IniFilename = nullptr;
-    ImFontConfig font;
-    font.SizePixels = std::floor(kFontPixels * scale);
-    io.Fonts->AddFontDefault(&font);
+    add_font(scale);
     set_style(scale);
     ImGui_ImplGlfw_InitForVulkan(window, true);
     ImGui_ImplVulkan_InitInfo info{.Instance = instance.get(),
@@ -149,6 +178,14 @@ void UiPass::begin_frame(const Input& input, bool has_mouse) {
     if (ImGui::IsMousePosValid()) {
         io.MousePos = {input.cursor.x / io.DisplayFramebufferScale.x,
                        input.cursor.y / io.DisplayFramebufferScale.y};
+    }
+    // Of a key that is pressed and let go between two frames the backend keeps nothing.
+    for (const int key : short_keys_) io.KeysDown[key] = false;
+    short_keys_.clear();
+    for (const int key : input.keys) {
+        if (key < 0 || io.KeysDown[key]) continue;
+        io.KeysDown[key] = true;
+        short_keys_.push_back(key);
     }
     ImGui::NewFrame();
 }

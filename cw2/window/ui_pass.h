@@ -27,7 +27,8 @@ class UiPass {
     UiPass(const UiPass&) = delete;
     UiPass& operator=(const UiPass&) = delete;
 
-    /// Of `input` it takes what the mouse does; keys and text it gets by itself. `has_mouse`: false
+    /// Of `input` it takes what the mouse does, and keys that are up again; other keys and text it
+    /// gets by itself. `has_mouse`: false
     /// while the mouse does something else.
     void begin_frame(const Input& input, bool has_mouse);
     void end_frame();
@@ -60,6 +61,7 @@ class UiPass {
     RenderPass pass_;
     DescriptorPool descriptor_pool_;
     std::vector<Framebuffer> framebuffers_;  ///< of each slot
+    std::vector<int> short_keys_;            ///< that were down in the last frame only for us
 };
 
 }  // namespace cw2

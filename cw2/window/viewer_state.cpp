@@ -41,7 +41,8 @@ ViewerState::ViewerState(const Options& options, const Bounds& bounds, float asp
 FrameSettings ViewerState::settings() const {
     // With a camera that is spelt out the aspect does not matter.
     FrameSettings settings = frame_settings(options_, bounds_, 1.0f);
-    settings.light.position = orbit(settings.light.position, bounds_.center, options_.time);
+    settings.light.position =
+        orbit(settings.light.position, bounds_.center, options_.time, options_.orbit_axis);
     return settings;
 }
 
@@ -50,15 +51,29 @@ void ViewerState::set(const Options& options, bool light_moves) {
     light_moves_ = light_moves;
 }
 
+void ViewerState::set_camera(const Camera& camera) {
+    options_.camera_position = to_user(camera.position, bounds_);
+    options_.camera_target = to_user(camera.target, bounds_);
+}
+
+void ViewerState::set_light(const glm::vec3& position) {
+    options_.light_position =
+        to_user(orbit(position, bounds_.center, -options_.time, options_.orbit_axis), bounds_);
+}
+
 void ViewerState::set_bounds(const Bounds& bounds) {
-    const glm::vec3 light =
-        orbit(from_user(*options_.light_position, bounds_), bounds_.center, options_.time);
-    // The orbit may be about another centre now: it starts where it comes by the same point.
-    if (bounds.center != bounds_.center || bounds.origin != bounds_.origin) {
-        const glm::vec3 there = from_user(to_user(light, bounds_), bounds);
-        options_.light_position = to_user(orbit(there, bounds.center, -options_.time), bounds);
-    }
+    const glm::vec3 light = from_user(to_user(settings().light.position, bounds_), bounds);
+    const bool moves_orbit = bounds.center != bounds_.center || bounds.origin != bounds_.origin;
     bounds_ = bounds;
+    // The orbit may be about another centre now: it starts where it comes by the same point.
+    if (moves_orbit) set_light(light);
+}
+
+void ViewerState::frame(std::span<const glm::vec3> vertices, const glm::vec3& center,
+                        float aspect) {
+    const Camera now = camera();
+    set_camera(framed(vertices, center, axes_of(now).back, nearest_frame(bounds_), now.vertical_fov,
+                      aspect));
 }
 
 bool ViewerState::apply(const Input& input, double seconds, float aspect) {
@@ -91,39 +106,45 @@ bool ViewerState::apply(const Command& command, float aspect) {
         case CommandKind::toggle_alpha_mask:
             options_.alpha_mask = !options_.alpha_mask;
             return true;
-        case CommandKind::reset: {
-            const Options start = spelt_out(start_, bounds_, aspect);
-            options_.camera_position = start.camera_position;
-            options_.camera_target = start.camera_target;
-            options_.vertical_fov = start.vertical_fov;
-            options_.light_position = start.light_position;
-            options_.light_color = start.light_color;
-            options_.time = start.time;
-            light_moves_ = false;
+        case CommandKind::toggle_two_sided:
+            options_.two_sided = !options_.two_sided;
             return true;
-        }
+        case CommandKind::frame_scene:
+            frame(bounds_.vertices, bounds_.center, aspect);
+            return true;
+        case CommandKind::reset:
+            reset(aspect);
+            return true;
         default:
             return false;
     }
 }
 
+void ViewerState::reset(float aspect) {
+    const Options start = spelt_out(start_, bounds_, aspect);
+    options_.camera_position = start.camera_position;
+    options_.camera_target = start.camera_target;
+    options_.vertical_fov = start.vertical_fov;
+    options_.light_position = start.light_position;
+    options_.light_color = start.light_color;
+    options_.time = start.time;
+    options_.orbit_axis = start.orbit_axis;
+    light_moves_ = false;
+}
+
 bool ViewerState::fly(const Input& input, float seconds) {
     const bool moves = input.direction != glm::vec3(0.0f);
     const bool turns = input.drag != glm::vec2(0.0f);
-    if (!moves && !turns) {
-        flies_ = false;
-        return false;
-    }
-    Camera camera{from_user(*options_.camera_position, bounds_),
-                  from_user(*options_.camera_target, bounds_), 0.0f};
-    if (turns) camera = turned(camera, kRadiansPerDraggedUnit * input.drag);
+    flies_ &= moves;
+    if (!moves && !turns) return false;
+    Camera there = camera();
+    if (turns) there = turned(there, kRadiansPerDraggedUnit * input.drag);
     if (moves) {
         const float held = flies_ ? seconds : std::min(seconds, kFirstSeconds);
         const float distance = kRadiiPerSecond * bounds_.radius * input.pace * held;
-        camera = moved(camera, distance * glm::normalize(input.direction));
+        there = moved(there, distance * glm::normalize(input.direction));
     }
-    options_.camera_position = to_user(camera.position, bounds_);
-    options_.camera_target = to_user(camera.target, bounds_);
+    set_camera(there);
     flies_ = moves;
     return true;
 }

@@ -1,6 +1,9 @@
 // What the window shows, and how the user changes it.
 #pragma once
 
+#include <glm/vec3.hpp>
+#include <span>
+
 #include "cw2/options/options.h"
 #include "cw2/render/camera.h"
 #include "cw2/render/frame_settings.h"
@@ -21,6 +24,15 @@ class ViewerState {
     bool apply(const Input& input, double seconds, float aspect);
 
     FrameSettings settings() const;
+    Camera camera() const { return settings().camera; }
+    const Bounds& bounds() const { return bounds_; }
+    /// Moves the camera; its field of view stays.
+    void set_camera(const Camera& camera);
+    /// Moves the light to where it shall be now, and its orbit with it.
+    void set_light(const glm::vec3& position);
+    /// Brings all of these points into view, in a window of `aspect`, and makes `center` the
+    /// target; the direction of sight stays.
+    void frame(std::span<const glm::vec3> vertices, const glm::vec3& center, float aspect);
 
     const Options& options() const { return options_; }
     bool light_moves() const { return light_moves_; }
@@ -32,6 +44,7 @@ class ViewerState {
 
  private:
     bool apply(const Command& command, float aspect);
+    void reset(float aspect);
     bool fly(const Input& input, float seconds);
 
     Options start_;

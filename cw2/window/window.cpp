@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "cw2/window/key_bindings.h"
+
 namespace cw2 {
 
 namespace {
@@ -17,52 +19,6 @@ namespace {
 std::string glfw_error() {
     const char* text = nullptr;
     return glfwGetError(&text) == GLFW_NO_ERROR ? "no reason given" : text;
-}
-
-/// The command of a key; none for the keys that move the camera and for all others.
-std::optional<Command> command_of(int key, int modifiers) {
-    switch (key) {
-        case GLFW_KEY_ESCAPE:
-            return Command{CommandKind::end};
-        case GLFW_KEY_F2:
-            return Command{CommandKind::save_settings};
-        case GLFW_KEY_F5:
-            return Command{CommandKind::reload_shaders};
-        case GLFW_KEY_F12:
-            return Command{modifiers & GLFW_MOD_SHIFT ? CommandKind::save_window
-                                                      : CommandKind::save_picture};
-        case GLFW_KEY_TAB:
-            return Command{CommandKind::toggle_panel};
-        case GLFW_KEY_SPACE:
-            return Command{CommandKind::toggle_light};
-        default:
-            break;
-    }
-    // Other letters with control, alt or super are not ours: they are short cuts elsewhere.
-    if (modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) {
-        if (!(modifiers & GLFW_MOD_CONTROL)) return std::nullopt;
-        if (key == GLFW_KEY_R) return Command{CommandKind::reload_shaders};
-        if (key == GLFW_KEY_C) return Command{CommandKind::copy_camera};
-        return std::nullopt;
-    }
-    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) {
-        return Command{CommandKind::show_view, static_cast<View>(key - GLFW_KEY_1)};
-    }
-    switch (key) {
-        case GLFW_KEY_V:
-            return Command{modifiers & GLFW_MOD_SHIFT ? CommandKind::previous_view
-                                                      : CommandKind::next_view};
-        case GLFW_KEY_N:
-            return Command{CommandKind::toggle_normal_map};
-        case GLFW_KEY_M:
-            return Command{CommandKind::toggle_alpha_mask};
-        case GLFW_KEY_R:
-            return Command{CommandKind::reset};
-        case GLFW_KEY_S:
-            return Command{CommandKind::save_settings_in_panel};
-        default:
-            return std::nullopt;
-    }
 }
 
 }  // namespace
@@ -97,6 +53,7 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
     glfwSetCursorPosCallback(handle_, on_cursor);
     glfwSetCharCallback(handle_, on_character);
     glfwSetScrollCallback(handle_, on_scroll);
+    glfwSetDropCallback(handle_, on_drop);
     glfwSetWindowRefreshCallback(handle_, on_refresh);
 }
 
@@ -206,30 +163,50 @@ Window& Window::of(GLFWwindow* handle) {
 void Window::on_key(GLFWwindow* handle, int key, int, int action, int modifiers) {
     Input& input = of(handle).inputs_.back();
     input.anything = true;
+    if (key == kLightKey) of(handle).light_key_held_ = action != GLFW_RELEASE;
     if (action != GLFW_PRESS) return;
-    if (const auto command = command_of(key, modifiers)) input.commands.push_back(*command);
+    input.keys.push_back(key);
+    const auto command = command_of(key, modifiers);
+    if (!command) return;
+    input.commands.push_back(*command);
+    // The keys that follow are for the field that it opens.
+    if (command->kind == CommandKind::open) of(handle).end_input();
 }
 
-void Window::on_character(GLFWwindow* handle, unsigned int) {
-    of(handle).inputs_.back().anything = true;
+void Window::on_character(GLFWwindow* handle, unsigned int character) {
+    Input& input = of(handle).inputs_.back();
+    input.anything = true;
+    if (const auto command = command_of_character(character)) input.commands.push_back(*command);
 }
 
-void Window::on_scroll(GLFWwindow* handle, double, double) {
-    of(handle).inputs_.back().anything = true;
+void Window::on_scroll(GLFWwindow* handle, double, double y) {
+    Window& window = of(handle);
+    Input& input = window.inputs_.back();
+    input.anything = true;
+    input.wheel += static_cast<float>(y);
+    input.wheel_at = window.in_pixels(window.cursor_);
 }
 
-void Window::on_button(GLFWwindow* handle, int button, int action, int) {
+void Window::on_drop(GLFWwindow* handle, int count, const char** paths) {
+    Input& input = of(handle).inputs_.back();
+    input.anything = true;
+    input.dropped.assign(paths, paths + count);
+}
+
+void Window::on_button(GLFWwindow* handle, int button, int action, int modifiers) {
     Window& window = of(handle);
     window.inputs_.back().anything = true;
-    if (button != GLFW_MOUSE_BUTTON_LEFT && button != GLFW_MOUSE_BUTTON_RIGHT) return;
-    const bool left = button == GLFW_MOUSE_BUTTON_LEFT;
+    if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
+    static_assert(static_cast<int>(MouseButton::middle) == GLFW_MOUSE_BUTTON_MIDDLE);
+    const auto which = static_cast<MouseButton>(button);
     const bool pressed = action == GLFW_PRESS;
     // A hidden cursor points at nothing.
-    if (left && pressed && window.cursor_hidden_) return;
+    if (which != MouseButton::right && pressed && window.cursor_hidden_) return;
     if (!window.inputs_.back().commands.empty()) window.end_input();
     Input& input = window.inputs_.back();
-    input.mouse_action = {left ? MouseButton::left : MouseButton::right, pressed};
-    input.buttons[left ? 0 : 1] = pressed;
+    input.mouse_action = {which, pressed, glfwGetTime(), (modifiers & GLFW_MOD_SHIFT) != 0,
+                          window.light_key_held_};
+    input.buttons[static_cast<std::size_t>(button)] = pressed;
     window.end_input();
 }
 

@@ -1,4 +1,4 @@
-// The window and what a user does in it; window.cpp alone knows GLFW.
+// The window and what a user does in it; it knows GLFW.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -74,6 +74,7 @@ class Window {
     static void on_cursor(GLFWwindow* handle, double x, double y);
     static void on_character(GLFWwindow* handle, unsigned int character);
     static void on_scroll(GLFWwindow* handle, double x, double y);
+    static void on_drop(GLFWwindow* handle, int count, const char** paths);
     static void on_refresh(GLFWwindow* handle);
     bool held(int key) const;
     void end_input();
@@ -83,6 +84,7 @@ class Window {
     GLFWwindow* handle_ = nullptr;
     std::deque<Input> inputs_{1};  ///< collected by the callbacks; the last one is not at its end
     bool cursor_hidden_ = false;
+    bool light_key_held_ = false;
     glm::dvec2 cursor_{0.0};  ///< screen units, as of the latest event
 };
 

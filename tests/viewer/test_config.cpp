@@ -64,6 +64,8 @@ class RandomOptions {
         options.normal_strength = std::uniform_real_distribution(0.0f, 10.0f)(random_);
         options.normal_map = below(2) == 0;
         options.alpha_mask = below(2) == 0;
+        options.two_sided = below(2) == 0;
+        options.orbit_axis = static_cast<Axis>(below(3));
         maybe([&] { options.anisotropy = 1 + below(16); });
         maybe([&] { options.device = text(); });
         maybe([&] {
@@ -285,6 +287,39 @@ TEST(Config, FilesThatCannotBeReadOrWrittenAreNoUsageErrors) {
     EXPECT_THROW(parse({"a.cw2mesh", "--config", folder / "gone.toml"}), common::FileError);
     EXPECT_THROW(parse({"a.cw2mesh", "--config", folder.path()}), common::FileError);
     EXPECT_THROW(write_config(folder / "no/a.toml", {}), common::FileError);
+}
+
+TEST(Config, SeveralScenesAreForTheWindow) {
+    const auto options = parse({"a.cw2mesh", "b.cw2mesh", "--size", "3x2", "c.cw2mesh"});
+    EXPECT_EQ(options->scene, "a.cw2mesh");
+    EXPECT_EQ(options->files,
+              (std::vector<std::filesystem::path>{"a.cw2mesh", "b.cw2mesh", "c.cw2mesh"}));
+    EXPECT_THROW(parse({"a.cw2mesh", "b.cw2mesh", "--output", "c.png"}), UsageError);
+}
+
+TEST(Config, BothEndsOfARangeAreTakenAndNothingBeyond) {
+    const auto takes = [](const std::string& option, const std::string& value) {
+        try {
+            return parse({"a.cw2mesh", "--" + option, value}).has_value();
+        } catch (const UsageError&) {
+            return false;
+        }
+    };
+    const auto check = [&](const std::string& option, auto range, double step) {
+        EXPECT_TRUE(takes(option, std::to_string(range.low))) << option;
+        EXPECT_TRUE(takes(option, std::to_string(range.high))) << option;
+        EXPECT_FALSE(takes(option, std::to_string(range.low - step))) << option;
+        EXPECT_FALSE(takes(option, std::to_string(range.high + step))) << option;
+    };
+    check("divider", kDividerRange, 0.01);
+    check("exposure", kExposureRange, 0.01);
+    check("fov", kFovRange, 0.01);
+    check("roughness", kOverrideRange, 0.01);
+    check("metalness", kOverrideRange, 0.01);
+    check("normal-strength", kNormalStrengthRange, 0.01);
+    EXPECT_TRUE(takes("orbit-axis", "y"));
+    EXPECT_FALSE(takes("orbit-axis", "w"));
+    EXPECT_FALSE(takes("orbit-axis", ""));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ class Panel : public testing::Test {
         ImGui::CreateContext();
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
-        io.DisplaySize = {1000.0f, 800.0f};
+        io.DisplaySize = {1100.0f, 840.0f};
         io.DeltaTime = 1.0f / 60.0f;
         unsigned char* pixels = nullptr;
         int width = 0, height = 0;
@@ -84,6 +84,8 @@ void note_changes(const PanelState& before, const PanelState& after, std::set<st
     note("normal strength", a.normal_strength != b.normal_strength);
     note("normal maps", a.normal_map != b.normal_map);
     note("alpha masks", a.alpha_mask != b.alpha_mask);
+    note("two-sided", a.two_sided != b.two_sided);
+    note("orbit's axis", a.orbit_axis != b.orbit_axis);
 }
 
 /// What a config file makes of the options.
@@ -114,8 +116,8 @@ TEST_F(Panel, NoClickOrDragMakesAnythingThatCannotBeSavedAndDrawn) {
             // A frame lies between arriving somewhere and pressing there. Half the time that is the
             // column of the check boxes, which are small.
             io.MousePos = {
-                static_cast<float>(random() % 2 == 0 ? 112 + random() % 18 : 10 + random() % 340),
-                static_cast<float>(32 + random() % 700)};
+                static_cast<float>(random() % 2 == 0 ? 92 + random() % 24 : 10 + random() % 300),
+                static_cast<float>(32 + random() % 760)};
             held = static_cast<int>(1 + random() % 6);
             io.MouseDown[0] = false;
         }
@@ -128,14 +130,15 @@ TEST_F(Panel, NoClickOrDragMakesAnythingThatCannotBeSavedAndDrawn) {
         }
     }
     const std::set<std::string> all{
-        "view",          "split",     "sides",           "divider",     "exposure",
-        "false colours", "range",     "samples",         "fov",         "light",
-        "light colour",  "ambient",   "background",      "time",        "orbit",
-        "roughness",     "metalness", "normal strength", "normal maps", "alpha masks"};
+        "view",        "split",       "sides",     "divider",     "exposure",     "false colours",
+        "range",       "samples",     "fov",       "light",       "light colour", "ambient",
+        "background",  "time",        "orbit",     "roughness",   "metalness",    "normal strength",
+        "normal maps", "alpha masks", "two-sided", "orbit's axis"};
     EXPECT_EQ(changed, all);
     for (const CommandKind kind :
          {CommandKind::save_settings, CommandKind::save_picture, CommandKind::reload_shaders,
-          CommandKind::copy_camera, CommandKind::reset}) {
+          CommandKind::copy_camera, CommandKind::reset, CommandKind::open, CommandKind::frame_scene,
+          CommandKind::toggle_help}) {
         EXPECT_TRUE(commanded.contains(kind)) << static_cast<int>(kind);
     }
 }

@@ -1,7 +1,9 @@
 // What the keys do to what the window shows.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
@@ -106,6 +108,60 @@ TEST(ViewerState, NormalMapAndAlphaMaskAreSwitchedEachByItsKey) {
     EXPECT_FALSE(viewer.state.settings().alpha_mask);
     viewer.apply(command(CommandKind::toggle_normal_map));
     EXPECT_TRUE(viewer.state.settings().normal_map);
+}
+
+TEST(ViewerState, TwoSidedIsSwitchedByItsKey) {
+    Viewer viewer;
+    EXPECT_FALSE(viewer.state.settings().materials.two_sided);
+    EXPECT_TRUE(viewer.apply(command(CommandKind::toggle_two_sided)));
+    EXPECT_TRUE(viewer.state.settings().materials.two_sided);
+}
+
+TEST(ViewerState, TheLightGoesAboutTheAxisThatIsAskedFor) {
+    for (const cw2::Axis axis : {cw2::Axis::x, cw2::Axis::y, cw2::Axis::z}) {
+        cw2::Options options = options_at(1.0);
+        options.light_position = glm::vec3(5.0f, 4.0f, 9.0f);
+        options.orbit_axis = axis;
+        const ViewerState state(options, kBounds, kAspect);
+        const int along = static_cast<int>(axis), from = (along + 1) % 3, to = (along + 2) % 3;
+        const glm::vec3 before = glm::vec3(*options.light_position) - kBounds.center;
+        const glm::vec3 after = state.settings().light.position - kBounds.center;
+        EXPECT_NEAR(after[along], before[along], 1e-5f);
+        const float angle =
+            std::atan2(after[to], after[from]) - std::atan2(before[to], before[from]);
+        EXPECT_NEAR(std::remainder(angle - 1.0f, 6.2831853f), 0.0f, 1e-5f);
+    }
+}
+
+TEST(ViewerState, ALightThatIsMovedStaysThereAndItsOrbitGoesOnFromThere) {
+    Viewer viewer;
+    const glm::vec3 there(4.0f, 5.0f, 6.0f);
+    viewer.state.set_light(there);
+    EXPECT_NEAR(glm::distance(viewer.light(), there), 0.0f, 1e-5f);
+    viewer.apply(command(CommandKind::toggle_light));
+    viewer.apply({}, 0.5);
+    EXPECT_NEAR(glm::distance(viewer.light(), cw2::orbit(there, kBounds.center, 0.5)), 0.0f, 1e-5f);
+}
+
+TEST(ViewerState, FramingKeepsTheDirectionAndShowsEveryVertexAsNearAsItFits) {
+    Viewer viewer;
+    viewer.apply(flight({1.0f, 0.3f, -1.0f}), 2.0);
+    const glm::dvec3 back = cw2::axes_of(viewer.camera()).back;
+    EXPECT_TRUE(viewer.apply(command(CommandKind::frame_scene)));
+    const cw2::Camera camera = viewer.camera();
+    EXPECT_NEAR(glm::distance(cw2::axes_of(camera).back, back), 0.0, 1e-5);
+    EXPECT_NEAR(glm::distance(camera.target, kBounds.center), 0.0f, 1e-5f);
+    const glm::mat4 clip_from_world =
+        cw2::clip_from_view(camera.vertical_fov, kAspect, cw2::near_distance(kBounds)) *
+        cw2::view_from_world(camera);
+    float farthest_out = 0.0f;
+    for (const glm::vec3& vertex : kVertices) {
+        const glm::vec4 clip = clip_from_world * glm::vec4(vertex, 1.0f);
+        ASSERT_GT(clip.w, 0.0f);
+        farthest_out =
+            std::max({farthest_out, std::abs(clip.x / clip.w), std::abs(clip.y / clip.w)});
+    }
+    EXPECT_NEAR(farthest_out, 0.95f, 1e-3f);
 }
 
 TEST(ViewerState, ResetBringsBackTheExactCameraAndLight) {

@@ -5,6 +5,9 @@
 set -euo pipefail
 
 check=$1 cw2=$2 tools=$3 sources=$4 scene=$5 work=$6
+scene_given=$scene
+# shellcheck disable=SC2034 # for session.sh
+screen=1200x800x24
 rm -rf "$work"
 mkdir -p "$work"
 # shellcheck source-path=SCRIPTDIR
@@ -100,8 +103,17 @@ check_switches_views() {
     press 1
     wait_until title_has " - shaded"
     press shift+v
-    wait_until title_has " - vertex-color"
+    wait_until title_has " - $("$cw2" --list-views | tail -n 1 | cut -d " " -f 1)"
+    # Shift and a digit is one of the next nine.
+    press shift+2
+    wait_until title_has " - base-color"
+    press shift+v
+    wait_until title_has " - fresnel"
+    press 1
+    wait_until title_has " - shaded"
     press v
+    wait_until title_has " - normal"
+    press shift+v
     wait_until title_has " - shaded"
     # With control these are no commands.
     press ctrl+n ctrl+m ctrl+v ctrl+2
@@ -123,10 +135,85 @@ check_moves_the_camera() {
         expect_same "$start" "$picture"
     done
 
-    xdotool mousemove --window "$window" 100 70 mousedown 1 mousemove_relative 60 20 mouseup 1
+    close_window
+}
+
+# `line` is then the camera as options.
+read_camera() {
+    press_for_line ctrl+c
+    [[ $line == --camera-position* ]] || fail "no camera: $line"
+}
+
+# The camera's target, as options print it.
+target_of() {
+    sed 's/.*--camera-target \([^ ]*\) .*/\1/' <<<"$1"
+}
+
+# How far apart two points X,Y,Z are.
+distance() {
+    awk -v a="$1" -v b="$2" 'BEGIN {
+        split(a, p, ","); split(b, q, ",")
+        print sqrt((p[1]-q[1])^2 + (p[2]-q[2])^2 + (p[3]-q[3])^2) }'
+}
+
+position_of() {
+    sed 's/--camera-position \([^ ]*\) .*/\1/' <<<"$1"
+}
+
+less() {
+    awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }'
+}
+
+# Drags from X Y by DX DY with a button.
+drag() {
+    xdotool mousemove --window "$window" "$1" "$2" mousedown "${5:-1}" \
+        mousemove_relative -- "$(($3 / 2))" "$(($4 / 2))" mousemove_relative -- "$(($3 - $3 / 2))" \
+        "$(($4 - $4 / 2))" mouseup "${5:-1}"
+}
+
+check_orbits_pans_and_looks() {
+    open_window "$cw2" "$scene" "${options[@]}"
     take_picture
-    expect_same "$start" "$picture"
-    xdotool mousedown 3
+    local start=$picture at_start
+    read_camera
+    at_start=$line
+
+    # The target and its distance stay; the light, too.
+    drag 100 70 60 20
+    read_camera
+    [[ $(target_of "$line") == $(target_of "$at_start") ]] || fail "the target: $line"
+    local far moved
+    moved=$(distance "$(position_of "$line")" "$(position_of "$at_start")")
+    less 0.5 "$moved" || fail "orbited by $moved"
+    far=$(distance "$(position_of "$line")" 0,0.75,0)
+    less 4.38 "$far" && less "$far" 4.40 || fail "distance $far"
+    local flags=$line
+    take_picture
+    # shellcheck disable=SC2086 # several words
+    expect_headless "${options[@]:0:4}" $flags
+    press r
+
+    # Both are moved by the same way, by either button: 144 pixels are 2 * 4.38 * tan(21).
+    local button
+    for button in 2 shift; do
+        if [[ $button == shift ]]; then
+            xdotool keydown shift
+            drag 100 70 0 72
+            xdotool keyup shift
+        else
+            drag 100 70 0 72 2
+        fi
+        read_camera
+        moved=$(distance "$(target_of "$line")" 0,0.75,0)
+        less 1.67 "$moved" && less "$moved" 1.70 || fail "panned by $moved"
+        moved=$(distance "$(position_of "$line")" "$(position_of "$at_start")")
+        less 1.67 "$moved" && less "$moved" 1.70 || fail "panned by $moved"
+        press r
+        take_picture
+        expect_same "$start" "$picture"
+    done
+
+    xdotool mousemove --window "$window" 100 70 mousedown 3
     drag_changes() {
         xdotool mousemove_relative 30 10
         picture_differs_from "$start"
@@ -135,10 +222,193 @@ check_moves_the_camera() {
     xdotool mouseup 3
     take_picture
     local turned=$picture
+    read_camera
+    [[ $(position_of "$line") == $(position_of "$at_start") ]] || fail "looking moves: $line"
     xdotool mousemove_relative 30 10
     take_picture
     expect_same "$turned" "$picture"
     press r
+    take_picture
+    expect_same "$start" "$picture"
+    close_window
+}
+
+check_goes_towards_what_is_under_the_cursor() {
+    open_window "$cw2" "$scene" "${large[@]}"
+    local before after point
+    read_camera
+    before=$(position_of "$line")
+    # What the pixel shows, and where the camera goes: straight to it, three notches of 0.85 each.
+    click 420 400
+    wait_until grep -q '^pixel 420,400' "$work/out"
+    point=$(sed -n 's/^pixel 420,400:.* position \([^;]*\);.*/\1/p' "$work/out")
+    xdotool click --repeat 3 --delay 20 4
+    camera_is_nearer() {
+        read_camera
+        awk -v a="$(distance "$(position_of "$line")" "$point")" \
+            -v b="$(distance "$before" "$point")" \
+            'BEGIN { f = a / b / (0.85 ^ 3); exit !(f > 0.999 && f < 1.001) }'
+    }
+    wait_until camera_is_nearer
+    # The point is still there. A click elsewhere comes first, so that two make no double click.
+    click 400 440
+    wait_until grep -q '^pixel 400,440' "$work/out"
+    click 420 400
+    was_read_twice() {
+        [[ $(grep -c '^pixel 420,400' "$work/out") -eq 2 ]]
+    }
+    wait_until was_read_twice
+    after=$(sed -n 's/^pixel 420,400:.* position \([^;]*\);.*/\1/p' "$work/out" | tail -n 1)
+    less "$(distance "$after" "$point")" 0.02 || fail "$point has become $after"
+    xdotool mousemove --window "$window" 420 400 click --repeat 3 --delay 20 5
+    camera_is_back() {
+        read_camera
+        less "$(distance "$(position_of "$line")" "$before")" 0.001
+    }
+    wait_until camera_is_back
+    # A double click makes what is there the target, and leaves the camera where it is.
+    xdotool mousemove --window "$window" 420 400 click --repeat 2 --delay 50 1
+    target_is_there() {
+        read_camera
+        less "$(distance "$(target_of "$line")" "$point")" 0.001
+    }
+    wait_until target_is_there
+    less "$(distance "$(position_of "$line")" "$before")" 0.001 || fail "the camera moved: $line"
+    close_window
+}
+
+check_frames_what_is_asked_for() {
+    open_window "$cw2" "$scene" --size 256x144 --samples 1
+    take_picture
+    local start=$picture key
+    # It begins with everything in view; both keys come back to that from the same direction.
+    for key in f Home; do
+        drag 128 72 0 40 2
+        picture_differs_from "$start" || fail "nothing was panned"
+        press $key
+        take_picture
+        different "$start" "$picture" && fail "$key does not bring everything into view"
+    done
+    # A material that was clicked is nearer then.
+    read_camera
+    local far=$line material
+    press shift+f
+    click 128 85
+    wait_until grep -q '^pixel 128,85' "$work/out"
+    press shift+f
+    read_camera
+    less "$(distance "$(position_of "$line")" "$(target_of "$line")")" \
+        "$(distance "$(position_of "$far")" "$(target_of "$far")")" || fail "not nearer: $line"
+    close_window
+}
+
+check_drags_the_light() {
+    open_window "$cw2" "$scene" "${options[@]}"
+    take_picture
+    local start=$picture at_start
+    read_camera
+    at_start=$line
+    xdotool keydown l
+    drag 100 70 60 20
+    xdotool keyup l
+    take_picture
+    expect_different "$start" "$picture"
+    read_camera
+    [[ ${line%% --light*} == "${at_start%% --light*}" ]] || fail "the camera moved: $line"
+    save_settings F2
+    expect_headless --config "$saved"
+    press r
+    take_picture
+    expect_same "$start" "$picture"
+    close_window
+}
+
+check_turns_back_faces() {
+    # From behind the leaves, and below the floor.
+    local behind=(--size 256x144 --samples 1 --camera-position -1,-2,-4 --camera-target 0,0.75,0)
+    open_window "$cw2" "$scene" "${behind[@]}"
+    take_picture
+    local start=$picture
+    press t
+    take_picture
+    expect_different "$start" "$picture"
+    expect_headless "${behind[@]}" --two-sided
+    press t
+    take_picture
+    expect_same "$start" "$picture"
+    close_window
+}
+
+check_explains_itself() {
+    open_window "$cw2" "$scene" "${large[@]}"
+    # Before any key a line lies over the picture; the screenshot is without it.
+    take_window_picture
+    local start=$picture key
+    for key in h question F1; do
+        press $key
+        take_window_picture
+        expect_different "$start" "$picture"
+        press Escape
+        take_window_picture
+        expect_same "$start" "$picture"
+    done
+    # Every key and what the mouse does is in --help, too.
+    "$cw2" --help | grep -q "Shift+F12  *saves the whole window" || fail "--help has no keys"
+    close_window
+}
+
+check_opens_other_files() {
+    local other=$work/other.cw2mesh broken=$work/broken.cw2mesh
+    "${cw2%/*}/cw2-bake" "${scene%/*}/plate.obj" -o "$other" --quiet --textures none
+    echo nonsense >"$broken"
+    open_window "$cw2" "$scene" "$other" "$broken" --size 256x144 --samples 1
+    take_picture
+    local start=$picture
+    wait_until title_has "stage.cw2mesh (1 of 3) - shaded"
+    press Next
+    wait_until title_has "other.cw2mesh (2 of 3) - shaded"
+    take_picture
+    local second=$picture
+    local scene=$other
+    expect_headless --size 256x144 --samples 1
+    # What cannot be opened leaves the picture and says why.
+    press Next
+    wait_until test -s "$work/err"
+    [[ $(<"$work/err") == "cw2: $broken: "* ]] || fail "no error with the file"
+    take_picture
+    expect_same "$second" "$picture"
+    : >"$work/err"
+    press Next
+    wait_until title_has "stage.cw2mesh (1 of 3)"
+    take_picture
+    expect_same "$start" "$picture"
+
+    "$tools/drop" "$window" "$other" || fail "not taken"
+    wait_until title_has "other.cw2mesh (2 of 4)"
+    take_picture
+    expect_same "$second" "$picture"
+    # The file that is watched is the one that is shown.
+    cp "$broken" "$other"
+    wait_until test -s "$work/err"
+    grep -aq "cw2: $other: " "$work/err" || fail "no error with the file"
+    : >"$work/err"
+
+    # Typed, and completed.
+    cp "$scene_given" "$work/stage.cw2mesh"
+    take_window_picture
+    press ctrl+o
+    wait_until window_picture_differs_from "$picture"
+    xdotool type "$work/stag"
+    press Tab
+    press Return
+    wait_until title_has "stage.cw2mesh (3 of 5)"
+    take_picture
+    expect_same "$start" "$picture"
+    take_window_picture
+    press ctrl+o
+    wait_until window_picture_differs_from "$picture"
+    xdotool type "nonsense"
+    press Escape
     take_picture
     expect_same "$start" "$picture"
     close_window
@@ -178,8 +448,9 @@ check_drags_the_divider() {
     wait_until title_has "stage.cw2mesh - normal | shaded"
     take_picture
     local start=$picture
-    # Beside it nothing is taken hold of.
-    xdotool mousemove --window "$window" 90 70 mousedown 1 mousemove_relative 60 0 mouseup 1
+    # Beside it something else is taken hold of.
+    drag 90 70 60 0
+    press r
     take_picture
     expect_same "$start" "$picture"
     xdotool mousemove --window "$window" 64 70 mousedown 1 mousemove_relative 40 10
@@ -313,29 +584,16 @@ check_reloads_the_scene() {
     close_window
 }
 
-# The readings of the frame tell times. `picture` is then one of the window without them.
-close_frame_readings() {
-    take_window_picture
+# The panel looks as it was found right; CW2_UPDATE_GOLDENS takes what it looks like now. After a
+# click at $2 $3 the numbers of the pixel are there; $4 $5 is where the cursor lights up nothing.
+compare_panel() {
+    local golden=$sources/tests/window/$1
     local shown=$picture
-    click 600 40
-    # Waits for the click to be handled: the shift of what follows would make it another one.
-    take_picture
+    click "$2" "$3"
+    wait_until grep -q "^pixel $2,$3" "$work/out"
     wait_until window_picture_differs_from "$shown"
-}
-
-# The panel looks as it was found right; CW2_UPDATE_GOLDENS takes what it looks like now.
-check_draws_the_panel() {
-    local golden=$sources/tests/window/panel.png
-    open_window "$cw2" "$scene" --size 790x590 --samples 1 "${camera[@]}" --split base-color,shaded \
-        --false-color 0,1 --roughness 0.25 --view normal
-    press Tab
-    close_frame_readings
-    local shown=$picture
-    click 500 420
-    wait_until grep -q '^pixel 500,420' "$work/out"
-    wait_until window_picture_differs_from "$shown"
-    # The cursor goes where it lights up nothing; the words under the buttons stay the same.
-    xdotool mousemove --window "$window" 440 500
+    xdotool mousemove --window "$window" "$4" "$5"
+    # The words under the buttons stay the same.
     press ctrl+c
     wait_until grep -q -- --camera-position "$work/out"
     take_window_picture
@@ -347,24 +605,53 @@ check_draws_the_panel() {
     close_window
 }
 
+panel_scene=(--size 1180x700 --samples 1 "${camera[@]}" --split base-color,shaded
+    --false-color 0,1 --roughness 0.25 --view normal)
+
+check_draws_the_panel() {
+    open_window "$cw2" "$scene" "${panel_scene[@]}"
+    press Tab
+    take_window_picture
+    local shown=$picture
+    # The readings of the frame tell times: they are closed.
+    click 900 43
+    # Waits for the click to be handled: the shift of what follows would make it another one.
+    take_picture
+    wait_until window_picture_differs_from "$shown"
+    compare_panel panel.png 600 420 620 560
+}
+
+check_draws_the_panel_at_192_dpi() {
+    "$tools/set_dpi" 192
+    open_window "$cw2" "$scene" "${panel_scene[@]}"
+    press Tab
+    take_window_picture
+    compare_panel panel_192_dpi.png 900 420 920 560
+}
+
 check_reads_the_numbers_of_a_pixel() {
     open_window "$cw2" "$scene" "${large[@]}"
     take_picture
-    # Without the panel a click does nothing.
+    # Without the panel a click tells the same on standard output, and the most of it in a line.
     click 420 400
+    wait_until has_lines "$work/out" 2
+    local told
+    told=$(tail -n 1 "$work/out")
+    [[ $told == "pixel 420,400: material floor; position "*"; D "*"; shaded "* ]] || fail "read: $told"
     press Tab
     take_window_picture
     local panel=$picture
-    has_lines "$work/out" 3 && fail "a click that was not asked for: $(tail -n 1 "$work/out")"
-    click 420 400
-    wait_until has_lines "$work/out" 3
-    [[ $(tail -n 1 "$work/out") == "pixel 420,400: material floor; position "*"; D "*"; shaded "* ]] ||
+    click 405 405
+    wait_until has_lines "$work/out" 4
+    [[ $(tail -n 1 "$work/out") == "pixel 405,405: material floor; "* ]] ||
         fail "read: $(tail -n 1 "$work/out")"
     wait_until window_picture_differs_from "$panel"
-    # Not on the panel, nor with the other button, nor where nothing is.
+    # Not on the panel, nor with another button, nor where nothing is. The right one is last: when
+    # it is let go the cursor is put back.
     click 20 300
-    click 420 400 3
+    click 420 400 2
     click 420 12
+    click 420 400 3
     take_picture
     [[ $(tail -n 2 "$work/out" | head -n 1) == *.png ]] || fail "read: $(tail -n 2 "$work/out")"
     close_window
@@ -372,7 +659,8 @@ check_reads_the_numbers_of_a_pixel() {
 
 # While cw2 is busy a user goes on; what was clicked is where the cursor was then.
 check_slow_frames_move_no_click() {
-    open_window "$cw2" "$scene" "${large[@]}" --split base-color,shaded
+    # Wide enough that the numbers have a window of their own, and move nothing.
+    open_window "$cw2" "$scene" --size 1180x480 --samples 1 "${camera[@]}" --split base-color,shaded
     press Tab
     take_window_picture
     # On the panel, and away from it.
@@ -386,7 +674,7 @@ check_slow_frames_move_no_click() {
     title_has " - base-color | shaded" || fail "no split"
     kill -STOP "$window_process"
     click 420 400
-    click 120 60
+    click 113 65
     xdotool mousemove --window "$window" 420 12
     kill -CONT "$window_process"
     wait_until grep -q '^pixel 420,400: ' "$work/out"
@@ -408,7 +696,6 @@ check_reads_what_has_changed_while_the_panel_was_hidden() {
     take_picture
     local start=$picture
     press Tab
-    close_frame_readings
     click 420 400
     wait_until grep -q '^pixel 420,400' "$work/out"
     press Tab
