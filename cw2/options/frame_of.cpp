@@ -69,29 +69,13 @@ void require_size(const Options& options, const Device& device) {
     }
 }
 
-namespace {
-
-/// Whether a CPU device draws so much that blocks are better decoded first. Measured on lavapipe,
-/// Sponza, launch to one picture, 4 samples a pixel, seconds of processor time: at 1280 x 720 3.0
-/// from blocks and 2.5 decoded, at 320 x 180 0.8 and 1.0; in between lies the limit.
-bool repays_decoding(const Options& options) {
-    constexpr std::uint64_t kWorthIt = 1'200'000;
-    // Of the whole turn, so that a part of it has the same frames.
-    const bool many = !options.output || options.bench_frames > 0 ||
-                      (options.frames && options.frames->count > 1);
-    return many || std::uint64_t{options.size.width} * options.size.height *
-                           options.samples.value_or(kSamples) >=
-                       kWorthIt;
-}
-
-}  // namespace
-
 TextureSettings texture_settings(const Options& options, const Device& device) {
     // Measured on lavapipe: any anisotropy makes a frame three times as long.
     const auto wanted = static_cast<float>(options.anisotropy.value_or(device.is_cpu() ? 1u : 16u));
-    return {
-        .anisotropy = std::min(wanted, device.properties().limits.maxSamplerAnisotropy),
-        .decode_blocks = !device.samples_blocks() || (device.is_cpu() && repays_decoding(options))};
+    // On CPUs sampling blocks makes a frame 1.5 times as long, and with no shader cache most of the
+    // first one is the compiling of their decoders.
+    return {.anisotropy = std::min(wanted, device.properties().limits.maxSamplerAnisotropy),
+            .decode_blocks = device.is_cpu() || !device.samples_blocks()};
 }
 
 }  // namespace cw2
