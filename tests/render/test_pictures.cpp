@@ -294,10 +294,11 @@ TEST_F(Pictures, MasksCutWhatTheyShow) {
 }
 
 TEST_F(Pictures, ALightOnTheSurfaceShinesStraightDownOnThatPoint) {
-    // So far from the origin that the positions of many pixels round to the light's.
+    // So far from one end of the scene that the positions of many pixels round to the light's.
     const TemporaryFolder folder;
     std::ofstream(folder / "far.obj") << "v 1048575 1048575 0\nv 1048577 1048575 0\n"
-                                         "v 1048577 1048577 0\nv 1048575 1048577 0\nf 1 2 3 4\n";
+                                         "v 1048577 1048577 0\nv 1048575 1048577 0\nf 1 2 3 4\n"
+                                         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 5 6 7\n";
     const auto scene = bake_scene(folder / "far.obj", {"--positions", "f32"});
     const auto draw_view = [&](const std::string& view) {
         return draw_scene(scene, ".exr",
