@@ -294,17 +294,15 @@ TEST_F(Pictures, MasksCutWhatTheyShow) {
 }
 
 TEST_F(Pictures, ALightOnTheSurfaceShinesStraightDownOnThatPoint) {
-    // So far from one end of the scene that the positions of many pixels round to the light's.
+    // Seen from so near that the positions of many pixels round to the light's.
     const TemporaryFolder folder;
-    std::ofstream(folder / "far.obj") << "v 1048575 1048575 0\nv 1048577 1048575 0\n"
-                                         "v 1048577 1048577 0\nv 1048575 1048577 0\nf 1 2 3 4\n"
-                                         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 5 6 7\n";
-    const auto scene = bake_scene(folder / "far.obj", {"--positions", "f32"});
+    std::ofstream(folder / "near.obj") << "v 15 15 0\nv 17 15 0\nv 17 17 0\nv 15 17 0\nf 1 2 3 4\n";
+    const auto scene = bake_scene(folder / "near.obj", {"--positions", "f32"});
     const auto draw_view = [&](const std::string& view) {
-        return draw_scene(scene, ".exr",
-                          {"--view", view, "--size", "64x64", "--samples", "1", "--camera-position",
-                           "1048576,1048576,2", "--camera-target", "1048576,1048576,0",
-                           "--light-position", "1048576,1048576,0"});
+        return draw_scene(
+            scene, ".exr",
+            {"--view", view, "--size", "64x64", "--samples", "1", "--fov", "1", "--camera-position",
+             "16,16,0.0005", "--camera-target", "16,16,0", "--light-position", "16,16,0"});
     };
     const Picture direction = draw_view("light-direction");
     int straight_down = 0;
