@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks who includes whom, that each folder includes only those below it, that what a file includes
-# from another folder it uses, and that Vulkan objects are destroyed in one header only.
+# Checks who includes whom, that each folder includes only those below it, and that Vulkan objects
+# are destroyed in one header only.
 # Usage: check_includes.sh [ROOT OF THE REPOSITORY]. Prints PATH:LINE: what is wrong, exits 1.
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"

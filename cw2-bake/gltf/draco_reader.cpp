@@ -1,6 +1,6 @@
 // The module around Draco, loaded by draco.cpp when a glTF is compressed with it: other bakes need
-// not start with one library more. And its library holds a tinygltf of its own, which would take the
-// place of ours if the program were linked with both.
+// not start with one library more. And its library holds a tinygltf of its own, which would take
+// the place of ours if the program were linked with both.
 #include "cw2-bake/gltf/draco_reader.h"
 
 #include <draco/compression/decode.h>
