@@ -15,19 +15,17 @@
 #include "common/io.h"
 #include "cw2/options/frame_of.h"
 #include "cw2/render/image_file.h"
-#include "cw2/render/picker.h"
 #include "cw2/render/scene.h"
 #include "cw2/render/shader_compiler.h"
 #include "cw2/window/file_list.h"
 #include "cw2/window/file_watch.h"
-#include "cw2/window/message.h"
-#include "cw2/window/overlay.h"
 #include "cw2/window/panel.h"
+#include "cw2/window/pixel_reader.h"
 #include "cw2/window/pointer.h"
 #include "cw2/window/presenter.h"
 #include "cw2/window/steering.h"
 #include "cw2/window/title.h"
-#include "cw2/window/ui_pass.h"
+#include "cw2/window/ui.h"
 #include "cw2/window/viewer_state.h"
 #include "cw2/window/window.h"
 
@@ -41,13 +39,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kIdleSeconds = 0.25;
 /// How often one looks whether the scene's file has changed.
 constexpr double kLookSeconds = 0.5;
-/// For how long a message, or an error, lies over the picture.
-constexpr std::chrono::seconds kMessageTime{6};
-constexpr std::chrono::seconds kErrorTime{15};
-constexpr std::string_view kHint = "Tab panel, H keys, drop a file";
-/// Frames that Dear ImGui takes to show what an event does.
-constexpr int kFramesToSettle = 3;
-
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -72,7 +63,6 @@ class Session {
     Session(const Options& options, const std::filesystem::path& sources, const Instance& instance,
             const Device& device, Window& window, VkSurfaceKHR surface)
         : sources_(sources),
-          instance_(instance),
           device_(device),
           window_(window),
           layouts_(device),
@@ -83,7 +73,8 @@ class Session {
               load_scene(device, layouts_, options.scene, texture_settings(options, device)))),
           presenter_(device, surface, layouts_, built_in_shaders(),
                      options.samples.value_or(kSamples)),
-          picker_(device, layouts_, built_in_shaders()),
+          ui_(window, instance, device, presenter_.format(), Presenter::kSlots),
+          reader_(device, layouts_, built_in_shaders()),
           state_(completed(options, scene_->start(), scene_->bounds()), scene_->bounds(),
                  aspect_of(window.extent())),
           title_(window) {
@@ -100,119 +91,57 @@ class Session {
         follow_the_file();
         const bool extent_changed = !same(extent_, window_.extent());
         extent_ = window_.extent();
-        const bool showed = shows_ui();
-        if (showed) run_ui(input);
-        follow_the_mouse(input);
-        if (!input.dropped.empty()) {
-            files_.insert(input.dropped);
-            open_file();
+        const bool showed = ui_.shows();
+        const Ui::Panel panel = [this](Input& of_panel) { run_panel(of_panel); };
+        if (showed) {
+            const bool has_mouse = pointer_.grip() == Pointer::Grip::nothing;
+            if (const auto path = ui_.run(input, has_mouse, panel)) open_files({*path});
         }
+        follow_the_mouse(input);
+        if (!input.dropped.empty()) open_files(input.dropped);
         for (const Command& command : input.commands) obey(command);
-        if (!input.commands.empty()) hint_until_ = {};
+        if (!input.commands.empty()) ui_.end_hint();
         const Clock::time_point now = Clock::now();
         const double seconds = std::chrono::duration<double>(now - last_step_).count();
         last_step_ = now;
         stale_ |= state_.apply(input, seconds, aspect_of(extent_)) || extent_changed;
         unshown_ |= input.exposed;
         // The panel shows what a frame takes without waiting for pipelines.
-        stale_ |= panel_shown_ && presenter_.times_are_cold();
-        if (shows_ui() && (!showed || ui_is_old_)) run_ui_anew(input, showed);
-        unshown_ |= showed && !shows_ui();
-        const bool drawn = (stale_ || unshown_ || shows_ui() || presenter_.refines()) && draw();
+        stale_ |= ui_.shows_panel() && presenter_.times_are_cold();
+        ui_.refresh(input, showed, panel);
+        unshown_ |= showed && !ui_.shows();
+        const bool drawn = (stale_ || unshown_ || ui_.shows() || presenter_.refines()) && draw();
         if (drawn) {
-            if (stale_ && panel_shown_) read_pick();
-            if (!has_drawn_) hint_until_ = now + kMessageTime;
+            if (stale_ && ui_.shows_panel()) reader_.read(*scene_, state_, extent_);
+            if (!has_drawn_) ui_.begin_hint();
             has_drawn_ = true;
             stale_ = false;
             unshown_ = false;
         } else {
             presenter_.finish();
         }
-        unsettled_ = input.anything ? kFramesToSettle : std::max(unsettled_ - 1, 0);
-        idle_ = !drawn || (shows_ui() && !state_.light_moves() && !presenter_.refines() &&
-                           input.direction == glm::vec3(0.0f) && unsettled_ == 0);
+        idle_ = !drawn || (ui_.shows() && !ui_.unsettled() && !state_.light_moves() &&
+                           !presenter_.refines() && input.direction == glm::vec3(0.0f));
         title_.update(state_.settings(), presenter_.times().gpu);
-    }
-
-    /// What lies over the picture where there is no panel.
-    std::string line() const {
-        if (panel_shown_ || wanted_ == Shot::window) return {};
-        if (message_.passes()) return message_.words;
-        return Clock::now() < hint_until_ ? std::string(kHint) : std::string();
-    }
-
-    bool shows_ui() const {
-        return panel_shown_ || help_shown_ || path_field_.is_open() || !line().empty();
-    }
-
-    /// Shows what lies over the picture, lets it change the state, and takes out of `input` what
-    /// was for it.
-    void run_ui(Input& input) {
-        if (!ui_) {
-            ui_.emplace(window_.handle(), instance_, device_, presenter_.format(),
-                        Presenter::kSlots, window_.content_scale());
-        }
-        ui_is_old_ = false;
-        ui_->begin_frame(input, pointer_.grip() == Pointer::Grip::nothing);
-        if (ui_->wants_mouse()) {
-            if (input.mouse_action && input.mouse_action->pressed) input.mouse_action.reset();
-            input.wheel = 0.0f;
-        }
-        const bool has_focus = ui_->wants_keys();
-        if (has_focus) input.direction = {};
-        const bool types = ui_->wants_text() || path_field_.is_open();
-        std::erase_if(input.commands, [&](Command& command) {
-            if (types) {
-                return command.kind != CommandKind::save_picture &&
-                       command.kind != CommandKind::save_window;
-            }
-            if (command.kind != CommandKind::save_settings_in_panel) return false;
-            command.kind = CommandKind::save_settings;
-            return !has_focus;
-        });
-        if (panel_shown_) run_panel(input);
-        const float scale = window_.content_scale();
-        if (const auto path = path_field_.draw(scale)) {
-            files_.insert({*path});
-            open_file();
-        }
-        if (help_shown_) {
-            draw_help(scale);
-        } else if (const std::string words = line(); !words.empty()) {
-            draw_line(words, message_.passes() && message_.is_error, scale);
-        }
-        ui_->end_frame();
-    }
-
-    /// So that the next frame to be drawn has something to draw.
-    void run_ui_anew(const Input& input, bool showed) {
-        Input nothing{.buttons = input.buttons, .cursor = input.cursor};
-        if (ui_ && !showed) {
-            // What was clicked while it was hidden was not for it.
-            ui_->begin_frame(nothing, false);
-            ui_->end_frame();
-        }
-        unsettled_ = kFramesToSettle;
-        run_ui(nothing);
     }
 
     void run_panel(Input& input) {
         PanelState panel{state_.options(), state_.light_moves()};
-        const std::vector<Command> wishes = draw_panel(
-            {.device = device_.properties().deviceName,
-             .bounds = scene_->bounds(),
-             .extent = extent_,
-             .times = presenter_.times(),
-             .counts = presenter_.counts(),
-             .triangles = scene_->triangle_count() * (state_.options().split ? 2 : 1),
-             .scene_bytes = scene_->memory_bytes(),
-             .image_bytes = presenter_.memory_bytes(),
-             .pick = pick_,
-             .picked_material = pick_ ? scene_->material_names()[pick_->material] : std::string(),
-             .message = message_.words,
-             .message_is_error = message_.is_error,
-             .scale = window_.content_scale()},
-            panel);
+        const std::vector<Command> wishes =
+            draw_panel({.device = device_.properties().deviceName,
+                        .bounds = scene_->bounds(),
+                        .extent = extent_,
+                        .times = presenter_.times(),
+                        .counts = presenter_.counts(),
+                        .triangles = scene_->triangle_count() * (state_.options().split ? 2 : 1),
+                        .scene_bytes = scene_->memory_bytes(),
+                        .image_bytes = presenter_.memory_bytes(),
+                        .pick = reader_.pick(),
+                        .picked_material = material_name(),
+                        .message = ui_.message().words,
+                        .message_is_error = ui_.message().is_error,
+                        .scale = window_.content_scale()},
+                       panel);
         input.commands.insert(input.commands.end(), wishes.begin(), wishes.end());
         if (panel.options == state_.options() && panel.light_moves == state_.light_moves()) return;
         if (panel.options.samples != state_.options().samples) {
@@ -231,10 +160,12 @@ class Session {
             .scale = window_.content_scale()};
         const Pointer::Grip before = pointer_.grip();
         const Pointer::Wishes wishes = pointer_.follow(input.mouse_action, input.cursor, picture);
-        if (pointer_.grip() != before && ui_) ui_->drop_focus();
+        if (pointer_.grip() != before) ui_.drop_focus();
         window_.hide_cursor(pointer_.grip() == Pointer::Grip::look);
         const glm::vec2 extent(extent_.width, extent_.height);
-        const auto surface_at = [this](const glm::vec2& where) { return surface(where); };
+        const auto surface_at = [this](const glm::vec2& where) {
+            return reader_.surface(*scene_, state_, extent_, where);
+        };
         if (wishes.divider && *wishes.divider != options.divider) {
             Options moved = options;
             moved.divider = *wishes.divider;
@@ -250,46 +181,33 @@ class Session {
             stale_ = true;
         }
         if (wishes.clicked) pick(*wishes.clicked);
-        if (wishes.double_clicked) look_at(*wishes.double_clicked);
+        const auto point =
+            wishes.double_clicked ? surface_at(*wishes.double_clicked) : std::nullopt;
+        if (point) {
+            Camera camera = state_.camera();
+            camera.target = *point;
+            state_.set_camera(camera);
+            stale_ = true;
+        }
     }
 
-    std::optional<Pick> pick_at(const glm::vec2& where) {
-        const glm::uvec2 pixel(glm::max(where, glm::vec2(0.0f)));
-        if (pixel.x >= extent_.width || pixel.y >= extent_.height) return std::nullopt;
-        return picker_.pick(*scene_, state_.settings(), extent_, pixel);
-    }
-
-    std::optional<glm::vec3> surface(const glm::vec2& where) {
-        const std::optional<Pick> there = pick_at(where);
-        if (!there) return std::nullopt;
-        return from_user(there->position, state_.bounds());
-    }
-
-    void look_at(const glm::vec2& where) {
-        const std::optional<glm::vec3> point = surface(where);
-        if (!point) return;
-        Camera camera = state_.camera();
-        camera.target = *point;
-        state_.set_camera(camera);
-        stale_ = true;
+    std::string material_name() const {
+        return reader_.pick() ? scene_->material_names()[reader_.pick()->material] : std::string();
     }
 
     /// Reads a pixel, from now on whenever the picture changes.
     void pick(const glm::vec2& where) {
-        pick_ = pick_at(where);
-        picked_ = glm::uvec2(glm::max(where, glm::vec2(0.0f)));
-        if (!pick_) return;
-        picked_material_ = pick_->material;
-        const std::string& material = scene_->material_names()[pick_->material];
+        reader_.choose(*scene_, state_, extent_, where);
+        if (!reader_.pick()) return;
         const std::string some =
-            fmt::format("{}: roughness {:.3g}, metalness {:.3g}; Tab shows all of it", material,
-                        pick_->roughness, pick_->metalness);
-        tell(describe(*pick_, material), panel_shown_ ? std::string() : some);
+            fmt::format("{}: roughness {:.3g}, metalness {:.3g}; Tab shows all of it",
+                        material_name(), reader_.pick()->roughness, reader_.pick()->metalness);
+        tell(describe(*reader_.pick(), material_name()), ui_.shows_panel() ? std::string() : some);
     }
 
     void frame_material() {
-        if (!picked_material_) return say("click what shall be framed first", false);
-        const std::vector<glm::vec3> positions = scene_->positions_of(*picked_material_);
+        if (!reader_.material()) return ui_.say("click what shall be framed first", false);
+        const std::vector<glm::vec3> positions = scene_->positions_of(*reader_.material());
         glm::vec3 low = positions.front(), high = low;
         for (const glm::vec3& position : positions) {
             low = glm::min(low, position);
@@ -299,30 +217,23 @@ class Session {
         stale_ = true;
     }
 
-    void read_pick() {
-        pick_.reset();
-        if (!picked_ || picked_->x >= extent_.width || picked_->y >= extent_.height) return;
-        pick_ = picker_.pick(*scene_, state_.settings(), extent_, *picked_);
-    }
-
     void obey(const Command& command) {
         switch (command.kind) {
             case CommandKind::toggle_panel:
-                panel_shown_ = !panel_shown_;
-                unshown_ = ui_is_old_ = true;
+                ui_.toggle_panel();
+                unshown_ = true;
                 // The picture may have changed while nobody read its numbers.
-                if (panel_shown_) read_pick();
+                if (ui_.shows_panel()) reader_.read(*scene_, state_, extent_);
                 break;
             case CommandKind::toggle_help:
-                help_shown_ = !help_shown_;
-                unshown_ = ui_is_old_ = true;
+                ui_.toggle_help();
+                unshown_ = true;
                 break;
             case CommandKind::frame_material:
                 frame_material();
                 break;
             case CommandKind::open:
-                path_field_.open();
-                ui_is_old_ = true;
+                ui_.ask_for_path();
                 break;
             case CommandKind::next_file:
             case CommandKind::previous_file:
@@ -342,7 +253,8 @@ class Session {
                     break;
                 }
                 wanted_ = Shot::window;
-                unshown_ = ui_is_old_ = true;
+                ui_.hide_line(true);
+                unshown_ = true;
                 break;
             case CommandKind::save_settings:
                 save_settings();
@@ -352,9 +264,8 @@ class Session {
                 tell(camera_flags(state_.options()), "copied camera and light");
                 break;
             case CommandKind::end:
-                ended_ = !help_shown_;
-                help_shown_ = false;
-                unshown_ = ui_is_old_ = true;
+                ended_ = !ui_.close_help();
+                unshown_ = true;
                 break;
             default:
                 break;
@@ -377,14 +288,20 @@ class Session {
         try {
             const CompiledShaders shaders = compile_shaders(sources_);
             presenter_.use_shaders(shaders.code());
-            picker_.use_shaders(shaders.code());
+            reader_.use_shaders(shaders.code());
             title_.set_error({});
-            message_ = {};
+            ui_.say({}, false);
             stale_ = true;
         } catch (const std::runtime_error& error) {
             // The folders would leave no room in the title.
             report(error.what(), (sources_ / "").string());
         }
+    }
+
+    /// Opens the first of these, which come behind the one that is shown.
+    void open_files(const std::vector<std::filesystem::path>& paths) {
+        files_.insert(paths);
+        open_file();
     }
 
     /// Opens the current file of the list; where that cannot be done the old picture stays.
@@ -409,12 +326,10 @@ class Session {
             scene_ = std::move(scene);
             state_ = std::move(state);
             watch_ = std::move(watch);
-            picked_.reset();
-            pick_.reset();
-            picked_material_.reset();
+            reader_.forget(false);
             title_.set_scene(path.filename().string(), files_.place());
             title_.set_error({});
-            say("opened " + path.string(), false);
+            ui_.say("opened " + path.string(), false);
             stale_ = true;
         } catch (const std::runtime_error& error) {
             report(error.what());
@@ -432,11 +347,10 @@ class Session {
                 reload_scene(device_, layouts_, path, texture_settings(state_.options(), device_)));
             presenter_.finish();
             scene_ = std::move(scene);
-            pick_.reset();  // it names a material of the old scene
-            picked_material_.reset();
+            reader_.forget(true);
             state_.set_bounds(scene_->bounds());
             title_.set_error({});
-            say(fmt::format("{} has changed: reloaded", path.filename().string()), false);
+            ui_.say(fmt::format("{} has changed: reloaded", path.filename().string()), false);
             stale_ = true;
         } catch (const std::runtime_error& error) {
             report(error.what(), (path.parent_path() / "").string());
@@ -446,7 +360,7 @@ class Session {
     /// False where nothing can be shown now.
     bool draw() {
         const FrameSettings settings = state_.settings();
-        const WindowContents contents{*scene_, settings, stale_, shows_ui() ? &*ui_ : nullptr};
+        const WindowContents contents{*scene_, settings, stale_, ui_.pass()};
         if (wanted_ == Shot::none) return presenter_.show(contents, extent_);
         const PictureBytes form{.srgb = state_.options().encoding == Encoding::srgb,
                                 .straight_alpha = !settings.background};
@@ -464,6 +378,7 @@ class Session {
             report(error.what());
         }
         wanted_ = Shot::none;
+        ui_.hide_line(false);
         return true;
     }
 
@@ -471,20 +386,15 @@ class Session {
     void tell(std::string_view line, const std::string& message) {
         fmt::print("{}\n", line);
         std::fflush(stdout);
-        say(message, false);
+        ui_.say(message, false);
     }
 
     /// An error on standard error and, without the folder, in the window; with a folder in the
     /// title, too: it lasts until what is read from there is right again.
     void report(const std::string& error, const std::string& folder = {}) {
         fmt::print(stderr, "cw2: {}\n", error);
-        say(error.starts_with(folder) ? error.substr(folder.size()) : error, true);
-        if (!folder.empty()) title_.set_error(message_.words);
-    }
-
-    void say(const std::string& words, bool is_error) {
-        message_ = {words, is_error, Clock::now() + (is_error ? kErrorTime : kMessageTime)};
-        ui_is_old_ = true;
+        ui_.say(error.starts_with(folder) ? error.substr(folder.size()) : error, true);
+        if (!folder.empty()) title_.set_error(ui_.message().words);
     }
 
     static bool same(VkExtent2D a, VkExtent2D b) {
@@ -494,7 +404,6 @@ class Session {
     enum class Shot { none, picture, window };
 
     const std::filesystem::path& sources_;
-    const Instance& instance_;
     const Device& device_;
     Window& window_;
     Layouts layouts_;
@@ -502,30 +411,20 @@ class Session {
     FileList files_;
     FileWatch watch_;
     std::unique_ptr<Scene> scene_;
-    std::optional<UiPass> ui_;  ///< from when something of it is first shown
-    Presenter presenter_;       ///< destroyed before what its frames draw, for which it waits
-    Picker picker_;
+    Presenter presenter_;
+    Ui ui_;
+    PixelReader reader_;
     ViewerState state_;
     Pointer pointer_;
     Wheel wheel_;
-    PathField path_field_;
-    std::optional<glm::uvec2> picked_;              ///< the pixel whose numbers are read
-    std::optional<Pick> pick_;                      ///< none: it shows the background
-    std::optional<std::uint32_t> picked_material_;  ///< of the latest click on a surface
     Title title_;
-    Message message_;
-    Clock::time_point hint_until_{};
     VkExtent2D extent_{};  ///< of the window at the last step
     Clock::time_point last_step_ = Clock::now();
     Clock::time_point last_look_ = Clock::now();
-    bool panel_shown_ = false;
-    bool help_shown_ = false;
-    bool ui_is_old_ = false;  ///< what lies over the picture is not what should
     bool has_drawn_ = false;  ///< there was a picture
     bool stale_ = true;       ///< the picture is not the one that should be seen
     bool unshown_ = true;     ///< the window does not show what it should
     Shot wanted_ = Shot::none;
-    int unsettled_ = 0;  ///< frames of the panel until it shows what the last events did
     bool idle_ = false;  ///< nothing happens until something is done
     bool ended_ = false;
 };
