@@ -93,8 +93,8 @@ void set_style(float scale) {
     style.ScrollbarSize = 11.0f;
     style.WindowTitleAlign = {0.02f, 0.5f};
     style.ScaleAllSizes(scale);
-    const ImVec4 ground{0.13f, 0.13f, 0.14f, 1.0f}, field{0.21f, 0.22f, 0.24f, 1.0f},
-        head{0.18f, 0.19f, 0.21f, 1.0f}, light{0.28f, 0.30f, 0.33f, 1.0f},
+    const ImVec4 ground{0.13f, 0.13f, 0.14f, 1.0f}, field{0.27f, 0.28f, 0.31f, 1.0f},
+        head{0.18f, 0.19f, 0.21f, 1.0f}, light{0.36f, 0.38f, 0.41f, 1.0f},
         accent{0.36f, 0.62f, 0.95f, 1.0f};
     const auto paint = [&](const ImVec4& color, std::initializer_list<ImGuiCol> parts) {
         for (const ImGuiCol part : parts) style.Colors[part] = color;
