@@ -206,6 +206,7 @@ check_orbits_pans_and_looks() {
         read_camera
         moved=$(distance "$(target_of "$line")" 0,0.75,0)
         less 1.67 "$moved" && less "$moved" 1.70 || fail "panned by $moved"
+        less 0.75 "$(target_of "$line" | cut -d, -f2)" || fail "panned the wrong way: $line"
         moved=$(distance "$(position_of "$line")" "$(position_of "$at_start")")
         less 1.67 "$moved" && less "$moved" 1.70 || fail "panned by $moved"
         press r
@@ -303,7 +304,7 @@ check_frames_what_is_asked_for() {
 }
 
 check_drags_the_light() {
-    open_window "$cw2" "$scene" "${options[@]}"
+    open_window "$cw2" "$scene" "${options[@]}" --time 1 --orbit-axis x
     take_picture
     local start=$picture at_start
     read_camera
