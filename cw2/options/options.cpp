@@ -74,8 +74,9 @@ void require_sense(const Options& options) {
     if (options.scene.empty()) throw UsageError("no scene is given; see --help");
     if ((options.z_up || options.strict) && !is_source(options.scene))
         throw UsageError("--up and --strict are for scenes that are not baked yet");
-    if (options.output && options.files.size() > 1) {
-        throw UsageError("--output takes one scene, not several");
+    if ((options.output || options.pixel) && options.files.size() > 1) {
+        throw UsageError(fmt::format("--output and --pixel take one scene: '{}' is another",
+                                     options.files[1].string()));
     }
     if (options.output && !image_kind(*options.output)) {
         throw UsageError(

@@ -295,6 +295,7 @@ TEST(Config, SeveralScenesAreForTheWindow) {
     EXPECT_EQ(options->files,
               (std::vector<std::filesystem::path>{"a.cw2mesh", "b.cw2mesh", "c.cw2mesh"}));
     EXPECT_THROW(parse({"a.cw2mesh", "b.cw2mesh", "--output", "c.png"}), UsageError);
+    EXPECT_THROW(parse({"a.cw2mesh", "b.cw2mesh", "--pixel", "0,0"}), UsageError);
 }
 
 TEST(Config, BothEndsOfARangeAreTakenAndNothingBeyond) {
