@@ -8,6 +8,7 @@ layout(constant_id = kViewConstant) const uint view = kViewShaded;
 layout(constant_id = kNormalMapConstant) const uint use_normal_map = 1;
 layout(constant_id = kRoughnessMapConstant) const uint use_roughness_map = 1;
 layout(constant_id = kMetalnessMapConstant) const uint use_metalness_map = 1;
+layout(constant_id = kMergedMapsConstant) const uint merged_maps = 0;
 layout(constant_id = kFalseColorConstant) const uint use_false_color = 0;
 layout(constant_id = kUnlitConstant) const uint unlit = 0;
 
@@ -42,10 +43,9 @@ vec3 vertex_normal() { return side() * normalize(world_normal); }
 
 // In MikkTSpace's way: the bitangent from the interpolated normal and tangent as they are, only
 // the sum is normalised.
-vec3 shading_normal() {
-    if (use_normal_map == 0 || draw.normal_map == kNormalMapAbsent) return vertex_normal();
-    vec3 t = texture(normal_map, uv, display.lod_bias).xyz * 2.0 - 1.0;
-    if (draw.normal_map == kNormalMapXy) t.z = sqrt(max(1.0 - dot(t.xy, t.xy), 0.0));
+vec3 shading_normal(vec3 texel) {
+    vec3 t = texel * 2.0 - 1.0;
+    if (merged_maps != 0 || draw.normal_map == kNormalMapXy) t.z = sqrt(max(1.0 - dot(t.xy, t.xy), 0.0));
     t.xy *= draw.normal_scale;
     const vec3 bitangent = handedness * cross(world_normal, world_tangent);
     return side() * normalize(t.x * world_tangent + t.y * bitangent + t.z * world_normal);
@@ -55,11 +55,20 @@ Surface surface_at_fragment() {
     Surface surface;
     surface.base_color =
         draw.base_color * vertex_color.rgb * texture(base_color_map, uv, display.lod_bias).rgb;
+    const bool has_normal_map = merged_maps != 0 || draw.normal_map != kNormalMapAbsent;
+    vec4 texel = vec4(0.0);
+    if (merged_maps != 0 || (use_normal_map != 0 && has_normal_map))
+        texel = texture(normal_map, uv, display.lod_bias);
     surface.alpha = draw.roughness;
-    if (use_roughness_map != 0) surface.alpha *= texture(roughness_map, uv, display.lod_bias).r;
+    if (use_roughness_map != 0)
+        surface.alpha *=
+            merged_maps != 0 ? texel.b : texture(roughness_map, uv, display.lod_bias).r;
     surface.metalness = draw.metalness;
-    if (use_metalness_map != 0) surface.metalness *= texture(metalness_map, uv, display.lod_bias).r;
-    surface.normal = shading_normal();
+    if (use_metalness_map != 0)
+        surface.metalness *=
+            merged_maps != 0 ? texel.a : texture(metalness_map, uv, display.lod_bias).r;
+    surface.normal =
+        use_normal_map != 0 && has_normal_map ? shading_normal(texel.xyz) : vertex_normal();
     return surface;
 }
 

@@ -75,7 +75,8 @@ TextureSettings texture_settings(const Options& options, const Device& device) {
     // On CPUs sampling blocks makes a frame 1.5 times as long, and with no shader cache most of the
     // first one is the compiling of their decoders.
     return {.anisotropy = std::min(wanted, device.properties().limits.maxSamplerAnisotropy),
-            .decode_blocks = device.is_cpu() || !device.samples_blocks()};
+            .decode_blocks = device.is_cpu() || !device.samples_blocks(),
+            .merge_maps = device.is_cpu()};
 }
 
 }  // namespace cw2

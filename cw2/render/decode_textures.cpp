@@ -44,4 +44,27 @@ std::vector<std::span<const std::byte>> decode_levels(
     return decoded;
 }
 
+std::vector<std::span<const std::byte>> stored_levels(const mesh_format::Document& document,
+                                                      std::uint32_t texture) {
+    const mesh_format::TextureRecord& record = document.textures[texture];
+    std::vector<std::span<const std::byte>> levels;
+    std::uint64_t offset = record.offset;
+    for (std::uint32_t level = 0; level < record.mip_count; ++level) {
+        const std::uint64_t bytes =
+            mesh_format::mip_bytes(record.format, record.width, record.height, level);
+        levels.push_back(document.texels.subspan(offset, bytes));
+        offset += bytes;
+    }
+    return levels;
+}
+
+std::vector<std::span<const std::byte>> texel_levels(const mesh_format::Document& document,
+                                                     std::uint32_t texture,
+                                                     std::vector<std::byte>& memory) {
+    const mesh_format::TextureRecord& record = document.textures[texture];
+    const auto levels = stored_levels(document, texture);
+    return mesh_format::block_extent(record.format) > 1 ? decode_levels(record, levels, memory)
+                                                        : levels;
+}
+
 }  // namespace cw2

@@ -141,6 +141,7 @@ std::array<std::uint32_t, interop::kSpecializationCount> constants_of(const Pipe
     values[interop::kAlphaMaskConstant] = !key.alpha_mask       ? interop::kAlphaMaskAbsent
                                           : key.side.alpha_mask ? 1
                                                                 : 0;
+    values[interop::kMergedMapsConstant] = key.merged_maps ? 1 : 0;
     values[interop::kRoughnessMapConstant] = key.roughness_map ? 1 : 0;
     values[interop::kMetalnessMapConstant] = key.metalness_map ? 1 : 0;
     values[interop::kFalseColorConstant] = key.false_color ? 1 : 0;

@@ -60,6 +60,7 @@ struct PipelineKey {
     mesh_format::VertexForms forms;
     Side side;
     bool alpha_mask;     ///< the material has one
+    bool merged_maps;    ///< the normal map holds roughness and metalness, too
     bool roughness_map;  ///< false: the factor alone counts
     bool metalness_map;  ///< the same
     bool false_color;

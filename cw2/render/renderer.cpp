@@ -74,6 +74,7 @@ PipelineKey pipeline_key(const Draw& draw, Side side, const FrameSettings& setti
             .forms = draw.forms,
             .side = side,
             .alpha_mask = draw.alpha_mask,
+            .merged_maps = draw.merged_maps,
             .roughness_map = !settings.materials.roughness,
             .metalness_map = !settings.materials.metalness,
             .false_color = settings.false_color.has_value(),

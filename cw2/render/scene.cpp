@@ -10,6 +10,7 @@
 
 #include "common/lfs_pointer.h"
 #include "cw2/render/decode_textures.h"
+#include "cw2/render/merged_maps.h"
 #include "cw2/render/vertex_positions.h"
 #include "mesh-format/blocks.h"
 #include "mesh-format/decode.h"
@@ -54,17 +55,14 @@ ImageSettings image_settings(const TextureRecord& record, bool decode_blocks) {
             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
 }
 
-std::vector<std::span<const std::byte>> levels_of(const TextureRecord& record,
-                                                  std::span<const std::byte> texels) {
-    std::vector<std::span<const std::byte>> levels;
-    std::uint64_t offset = record.offset;
-    for (std::uint32_t level = 0; level < record.mip_count; ++level) {
-        const std::uint64_t bytes =
-            mesh_format::mip_bytes(record.format, record.width, record.height, level);
-        levels.push_back(texels.subspan(offset, bytes));
-        offset += bytes;
-    }
-    return levels;
+/// Of the image of merged maps.
+TextureRecord merged_record(TextureRecord normal) {
+    normal.format = TextureFormat::rgba8_unorm;
+    return normal;
+}
+
+bool is_merged(MapUse use) {
+    return use == MapUse::normal || use == MapUse::roughness || use == MapUse::metalness;
 }
 
 Sampler make_sampler(const Device& device, VkSamplerAddressMode mode, float anisotropy) {
@@ -139,7 +137,7 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
                              VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
     device.name(vertices_.handle.get(), "scene vertices");
     device.name(indices_.handle.get(), "scene indices");
-    upload_textures(device, document, settings.decode_blocks, uploader);
+    upload_textures(device, document, settings, uploader);
     uploader.finish();
 
     for (const MaterialRecord& material : document.materials) {
@@ -161,6 +159,7 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
                           .forms = mesh.forms,
                           .shading = shading_of(material),
                           .alpha_mask = (material.flags & mesh_format::kAlphaMask) != 0,
+                          .merged_maps = merged_of_material_[mesh.material] != merged_.end(),
                           .unlit = (material.flags & mesh_format::kUnlit) != 0,
                           .cull_back = (material.flags & mesh_format::kCullBack) != 0,
                           .material = sets[mesh.material],
@@ -170,46 +169,84 @@ Scene::Scene(const Device& device, const Layouts& layouts, const Document& docum
     }
 }
 
-void Scene::upload_textures(const Device& device, const Document& document, bool decode_blocks,
-                            Uploader& uploader) {
+std::set<std::uint32_t> Scene::merge_maps(const Document& document) {
+    std::set<std::uint32_t> needed;
+    for (std::size_t i = 0; i < document.materials.size(); ++i) {
+        const mesh_format::PerMap<std::uint32_t>& textures = document.materials[i].textures;
+        const std::optional<MergedMaps> maps = merged_maps(document, document.materials[i]);
+        if (maps) merged_of_material_[i] = merged_.try_emplace(*maps).first;
+        for (std::uint32_t use = 0; use < mesh_format::kMapUseCount; ++use) {
+            if (!maps || !is_merged(MapUse{use})) needed.insert(textures.values[use]);
+        }
+    }
+    return needed;
+}
+
+void Scene::upload_textures(const Device& device, const Document& document,
+                            const TextureSettings& settings, Uploader& uploader) {
     static constexpr std::byte kWhite[4] = {std::byte{255}, std::byte{255}, std::byte{255},
                                             std::byte{255}};
     constexpr TextureRecord kWhiteTexel{
         .format = TextureFormat::rgba8_unorm, .width = 1, .height = 1, .mip_count = 1};
+    merged_of_material_.assign(document.materials.size(), merged_.end());
+    std::set<std::uint32_t> needed;
+    if (settings.merge_maps) needed = merge_maps(document);
     std::vector<VkImage> images;
-    const auto add = [&](const TextureRecord& record) {
-        textures_.push_back(
-            {.image = make_image_handle(device, image_settings(record, decode_blocks)),
-             .clamp = (record.flags & mesh_format::kClampToEdge) != 0});
-        images.push_back(textures_.back().image.get());
-        device.name(images.back(), fmt::format("texture {}", document.text(record.name)));
+    const auto add = [&](const TextureRecord& record, Texture& texture, const std::string& name) {
+        texture.image = make_image_handle(device, image_settings(record, settings.decode_blocks));
+        texture.clamp = (record.flags & mesh_format::kClampToEdge) != 0;
+        images.push_back(texture.image.get());
+        device.name(images.back(), name);
     };
-    for (const TextureRecord& record : document.textures) add(record);
-    add(kWhiteTexel);
-    device.name(images.back(), "white texel");
+    textures_.resize(document.textures.size() + 1);
+    const auto is_needed = [&](std::uint32_t i) {
+        return !settings.merge_maps || needed.contains(i);
+    };
+    for (std::uint32_t i = 0; i < document.textures.size(); ++i) {
+        const TextureRecord& record = document.textures[i];
+        if (is_needed(i))
+            add(record, textures_[i], fmt::format("texture {}", document.text(record.name)));
+    }
+    add(kWhiteTexel, textures_.back(), "white texel");
+    for (auto& [maps, texture] : merged_) {
+        const TextureRecord& normal = document.textures[maps.normal];
+        add(merged_record(normal), texture,
+            fmt::format("merged texture {}", document.text(normal.name)));
+    }
     texture_memory_ = bind_images(device, images);
 
     std::vector<std::byte> decoded;
-    const auto upload = [&](std::size_t i, const TextureRecord& record,
+    const auto upload = [&](Texture& texture, const TextureRecord& record, const TexelBlock& block,
                             std::span<const std::span<const std::byte>> levels) {
-        const VkExtent2D extent{record.width, record.height};
-        if (decode_blocks && in_blocks(record)) {
-            uploader.write_image(images[i], extent,
-                                 {1, mesh_format::decoded_texel_bytes(record.format)},
-                                 decode_levels(record, levels, decoded));
-        } else {
-            uploader.write_image(
-                images[i], extent,
-                {mesh_format::block_extent(record.format), mesh_format::block_bytes(record.format)},
-                levels);
-        }
-        textures_[i].view =
-            make_image_view(device, images[i], image_settings(record, decode_blocks));
+        uploader.write_image(texture.image.get(), {record.width, record.height}, block, levels);
+        texture.view = make_image_view(device, texture.image.get(),
+                                       image_settings(record, settings.decode_blocks));
     };
-    for (std::size_t i = 0; i < document.textures.size(); ++i) {
-        upload(i, document.textures[i], levels_of(document.textures[i], document.texels));
+    for (std::uint32_t i = 0; i < document.textures.size(); ++i) {
+        const TextureRecord& record = document.textures[i];
+        if (!is_needed(i)) continue;
+        if (settings.decode_blocks && in_blocks(record)) {
+            upload(textures_[i], record, {1, mesh_format::decoded_texel_bytes(record.format)},
+                   texel_levels(document, i, decoded));
+        } else {
+            upload(
+                textures_[i], record,
+                {mesh_format::block_extent(record.format), mesh_format::block_bytes(record.format)},
+                stored_levels(document, i));
+        }
     }
-    upload(document.textures.size(), kWhiteTexel, std::array{std::span<const std::byte>(kWhite)});
+    upload(textures_.back(), kWhiteTexel, {1, 4}, std::array{std::span<const std::byte>(kWhite)});
+    for (auto& [maps, texture] : merged_) {
+        const TextureRecord record = merged_record(document.textures[maps.normal]);
+        upload(texture, record, {1, 4}, merged_levels(document, maps, decoded));
+        // Where the shader reads one map alone, it does so as from an image of its own.
+        const VkComponentSwizzle channels[] = {VK_COMPONENT_SWIZZLE_B, VK_COMPONENT_SWIZZLE_A};
+        for (std::size_t i = 0; i < 2; ++i) {
+            ImageSettings own = image_settings(record, false);
+            own.red = channels[i];
+            texture.scalar_views[i] = make_image_view(device, texture.image.get(), own);
+        }
+    }
 }
 
 std::vector<VkDescriptorSet> Scene::make_material_sets(const Device& device, const Layouts& layouts,
@@ -218,26 +255,33 @@ std::vector<VkDescriptorSet> Scene::make_material_sets(const Device& device, con
     descriptor_pool_ = make_descriptor_pool(device, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                                             mesh_format::kMapUseCount * set_count, set_count);
     std::vector<VkDescriptorSet> sets;
-    for (const MaterialRecord& material : document.materials) {
+    for (std::size_t i = 0; i < document.materials.size(); ++i) {
+        const MaterialRecord& material = document.materials[i];
         const VkDescriptorSet set = allocate_set(device, descriptor_pool_.get(),
                                                  layouts.material_set(shading_of(material)));
         device.name(set, fmt::format("material {}", document.text(material.name)));
-        write_material_set(device, set, material);
+        write_material_set(device, set, material, i);
         sets.push_back(set);
     }
     return sets;
 }
 
 void Scene::write_material_set(const Device& device, VkDescriptorSet set,
-                               const MaterialRecord& material) const {
+                               const MaterialRecord& material, std::size_t number) const {
+    const auto merged = merged_of_material_[number];
     std::array<VkDescriptorImageInfo, mesh_format::kMapUseCount> images;
     std::array<VkWriteDescriptorSet, mesh_format::kMapUseCount> writes;
     const std::uint32_t count = map_count(shading_of(material));
     for (std::uint32_t use = 0; use < count; ++use) {
         const std::uint32_t index = material.textures.values[use];
-        const Texture& texture =
-            index == mesh_format::kNoTexture ? textures_.back() : textures_[index];
-        images[use] = {texture.clamp ? clamp_.get() : repeat_.get(), texture.view.get(),
+        const bool is_part = merged != merged_.end() && is_merged(MapUse{use});
+        const Texture& texture = is_part                            ? merged->second
+                                 : index == mesh_format::kNoTexture ? textures_.back()
+                                                                    : textures_[index];
+        const bool is_scalar = is_part && MapUse{use} != MapUse::normal;
+        const ImageView& view =
+            is_scalar ? texture.scalar_views[MapUse{use} == MapUse::metalness] : texture.view;
+        images[use] = {texture.clamp ? clamp_.get() : repeat_.get(), view.get(),
                        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
         writes[use] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                        .dstSet = set,

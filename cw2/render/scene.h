@@ -3,13 +3,17 @@
 
 #include <vulkan/vulkan.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "common/io.h"
 #include "cw2/render/camera.h"
+#include "cw2/render/merged_maps.h"
 #include "cw2/render/pipelines.h"
 #include "cw2/vulkan/device.h"
 #include "cw2/vulkan/handle.h"
@@ -24,7 +28,8 @@ struct Draw {
     interop::DrawConstants constants;
     mesh_format::VertexForms forms;
     Shading shading;
-    bool alpha_mask;  ///< the material has one
+    bool alpha_mask;   ///< the material has one
+    bool merged_maps;  ///< the normal map holds roughness and metalness, too
     bool unlit;
     bool cull_back;
     VkDescriptorSet material;
@@ -48,6 +53,7 @@ struct SceneChunk {
 struct TextureSettings {
     float anisotropy = 1.0f;     ///< the samplers' largest ratio, 1 for none
     bool decode_blocks = false;  ///< what is stored in blocks becomes single texels
+    bool merge_maps = false;     ///< normal, roughness and metalness in one image; needs the other
 };
 
 class Scene {
@@ -74,15 +80,19 @@ class Scene {
     struct Texture {
         ImageHandle image;
         ImageView view;
-        bool clamp;
+        bool clamp = false;
+        std::array<ImageView, 2> scalar_views{};  ///< of merged maps: roughness, metalness
     };
+    using Merged = std::map<MergedMaps, Texture>;
 
     void upload_textures(const Device& device, const mesh_format::Document& document,
-                         bool decode_blocks, Uploader& uploader);
+                         const TextureSettings& settings, Uploader& uploader);
+    /// Chooses what is merged. Returns the textures that somebody needs as they are.
+    std::set<std::uint32_t> merge_maps(const mesh_format::Document& document);
     std::vector<VkDescriptorSet> make_material_sets(const Device& device, const Layouts& layouts,
                                                     const mesh_format::Document& document);
     void write_material_set(const Device& device, VkDescriptorSet set,
-                            const mesh_format::MaterialRecord& material) const;
+                            const mesh_format::MaterialRecord& material, std::size_t number) const;
 
     std::vector<glm::vec3> positions_;  ///< of all vertices, draw after draw
     Bounds bounds_;
@@ -90,7 +100,10 @@ class Scene {
     Buffer vertices_;
     Buffer indices_;
     std::vector<Memory> texture_memory_;
-    std::vector<Texture> textures_;  ///< the document's, then a white texel for what is absent
+    /// The document's, those that are needed; then a white texel for what is absent.
+    std::vector<Texture> textures_;
+    Merged merged_;
+    std::vector<Merged::const_iterator> merged_of_material_;  ///< the end where there is none
     Sampler repeat_;
     Sampler clamp_;
     DescriptorPool descriptor_pool_;

@@ -124,6 +124,7 @@ ImageView make_image_view(const Device& device, VkImage image, const ImageSettin
         .image = image,
         .viewType = VK_IMAGE_VIEW_TYPE_2D,
         .format = settings.format,
+        .components = {.r = settings.red},
         .subresourceRange = {aspect_of(settings.format), 0, settings.mip_count, 0, 1}};
     VkImageView view = VK_NULL_HANDLE;
     check(vkCreateImageView(device.get(), &info, nullptr, &view), "vkCreateImageView");

@@ -43,6 +43,7 @@ struct ImageSettings {
     std::uint32_t mip_count = 1;
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
     VkImageUsageFlags usage = 0;
+    VkComponentSwizzle red = VK_COMPONENT_SWIZZLE_IDENTITY;  ///< what a view shows as red
 };
 
 /// An image and its memory. Throws VulkanError.
