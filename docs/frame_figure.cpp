@@ -1,7 +1,8 @@
-// Makes the figure of docs/tangent-frames.md: for each form of the tangent frame the shaded picture
-// and, below it, the angle between its frames and those of the form f32, in false colour.
+// Makes the pictures of docs/tangent-frames.md, frames-FORM.png for each form of the tangent frame:
+// the shaded picture and, below it, the angle between its frames and those of the form f32, in
+// false colour.
 //
-// Usage: frame_figure OUTPUT.png DIRECTORY FORM...
+// Usage: frame_figure OUTPUT_DIRECTORY DIRECTORY FORM...
 // DIRECTORY holds, all of one size, FORM-shaded.exr and the views FORM-vertex-normal.exr,
 // FORM-tangent.exr and FORM-bitangent.exr of each FORM; the first one is what others are held to.
 #include <ImfChannelList.h>
@@ -25,7 +26,7 @@
 namespace {
 
 constexpr cw2::ValueRange kDegrees{1e-4f, 10.0f};
-constexpr int kLegendHeight = 63;
+constexpr int kLegendHeight = 21;
 
 struct Picture {
     int width = 0;
@@ -81,7 +82,7 @@ std::uint8_t encode_srgb(float linear) {
     return static_cast<std::uint8_t>(std::lround(255.0f * encoded));
 }
 
-/// The figure, RGBA of 8 bits.
+/// A picture, RGBA of 8 bits.
 class Canvas {
  public:
     Canvas(int width, int height) : width_(width), height_(height) {
@@ -108,18 +109,18 @@ class Canvas {
     std::vector<std::byte> bytes_;
 };
 
-void draw_shaded(Canvas& canvas, int left, const Picture& shaded) {
+void draw_shaded(Canvas& canvas, const Picture& shaded) {
     const float exposure = std::exp2(cw2::kViews[cw2::interop::kViewShaded].exposure);
     for (int y = 0; y < shaded.height; ++y) {
         for (int x = 0; x < shaded.width; ++x) {
             const glm::vec4 p =
                 exposure * shaded.pixels[static_cast<std::size_t>(y) * shaded.width + x];
-            canvas.set(left + x, y, {encode_srgb(p.r), encode_srgb(p.g), encode_srgb(p.b)});
+            canvas.set(x, y, {encode_srgb(p.r), encode_srgb(p.g), encode_srgb(p.b)});
         }
     }
 }
 
-void draw_error(Canvas& canvas, int left, int top, const Frames& frames, const Frames& truth,
+void draw_error(Canvas& canvas, int top, const Frames& frames, const Frames& truth,
                 const std::string& form) {
     double sum = 0.0, worst = 0.0;
     std::size_t count = 0;
@@ -127,7 +128,7 @@ void draw_error(Canvas& canvas, int left, int top, const Frames& frames, const F
         for (int x = 0; x < frames.normal.width; ++x) {
             const std::size_t pixel = static_cast<std::size_t>(y) * frames.normal.width + x;
             if (truth.normal.pixels[pixel].a == 0.0f) {
-                canvas.set(left + x, top + y, {0, 0, 0});
+                canvas.set(x, top + y, {0, 0, 0});
                 continue;
             }
             const double angle = angle_between(frames, truth, pixel);
@@ -136,7 +137,7 @@ void draw_error(Canvas& canvas, int left, int top, const Frames& frames, const F
             ++count;
             const float position = cw2::interop::false_color_position(static_cast<float>(angle),
                                                                       kDegrees.low, kDegrees.high);
-            canvas.set(left + x, top + y, cw2::false_color_bytes(position));
+            canvas.set(x, top + y, cw2::false_color_bytes(position));
         }
     }
     fmt::print("{}: mean {:.5f}, worst {:.5f} degrees over {} pixels\n", form,
@@ -147,7 +148,7 @@ void draw_error(Canvas& canvas, int left, int top, const Frames& frames, const F
 
 int main(int argc, char** argv) {
     if (argc < 4) {
-        fmt::print(stderr, "usage: frame_figure OUTPUT.png DIRECTORY FORM...\n");
+        fmt::print(stderr, "usage: frame_figure OUTPUT_DIRECTORY DIRECTORY FORM...\n");
         return 2;
     }
     try {
@@ -156,15 +157,13 @@ int main(int argc, char** argv) {
         const Frames truth(directory + forms.front());
         const int width = truth.normal.width;
         const int height = truth.normal.height;
-        const int total = width * static_cast<int>(forms.size());
-        Canvas canvas(total, 2 * height + kLegendHeight);
-        for (std::size_t i = 0; i < forms.size(); ++i) {
-            const int left = width * static_cast<int>(i);
-            draw_shaded(canvas, left, read(directory + forms[i] + "-shaded.exr"));
-            draw_error(canvas, left, height, Frames(directory + forms[i]), truth, forms[i]);
+        for (const std::string& form : forms) {
+            Canvas canvas(width, 2 * height + kLegendHeight);
+            draw_shaded(canvas, read(directory + form + "-shaded.exr"));
+            draw_error(canvas, height, Frames(directory + form), truth, form);
+            canvas.draw_legend();
+            canvas.save(fmt::format("{}/frames-{}.png", argv[1], form));
         }
-        canvas.draw_legend();
-        canvas.save(argv[1]);
         return 0;
     } catch (const std::exception& error) {
         fmt::print(stderr, "frame_figure: {}\n", error.what());
