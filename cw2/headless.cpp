@@ -267,7 +267,7 @@ void render_headless(const Device& device, const Options& options) {
     std::optional<common::OutputFile> stats;
     if (options.stats) stats.emplace(*options.stats);
 
-    const std::unique_ptr<SourceBake> bake = bake_of(options, device);
+    const std::unique_ptr<SourceBake> bake = bake_of(options, device, tell_user);
     if (bake) wait_for(*bake);
 
     Timings timings;

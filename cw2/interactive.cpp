@@ -11,12 +11,14 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "common/io.h"
 #include "cw2/options/frame_of.h"
 #include "cw2/render/image_file.h"
 #include "cw2/render/scene.h"
 #include "cw2/render/shader_compiler.h"
+#include "cw2/source_bake.h"
 #include "cw2/window/file_list.h"
 #include "cw2/window/file_watch.h"
 #include "cw2/window/panel.h"
@@ -39,6 +41,9 @@ using Clock = std::chrono::steady_clock;
 constexpr double kIdleSeconds = 0.25;
 /// How often one looks whether the scene's file has changed.
 constexpr double kLookSeconds = 0.5;
+/// How often one asks how far a bake is.
+constexpr double kBakeSeconds = 0.05;
+
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -68,9 +73,8 @@ class Session {
           layouts_(device),
           asked_(options),
           files_(options.files.empty() ? std::vector{options.scene} : options.files),
-          watch_(options.scene),
-          scene_(std::make_unique<Scene>(
-              load_scene(device, layouts_, options.scene, texture_settings(options, device)))),
+          watch_({options.scene}),
+          scene_(first_scene()),
           presenter_(device, surface, layouts_, built_in_shaders(),
                      options.samples.value_or(kSamples)),
           ui_(window, instance, device, presenter_.format(), Presenter::kSlots),
@@ -87,8 +91,9 @@ class Session {
 
  private:
     void step() {
-        Input input = window_.poll(idle_ ? kIdleSeconds : 0.0);
+        Input input = window_.poll(!idle_ ? 0.0 : opening_ ? kBakeSeconds : kIdleSeconds);
         follow_the_file();
+        if (opening_) go_on_opening();
         const bool extent_changed = !same(extent_, window_.extent());
         extent_ = window_.extent();
         const bool showed = ui_.shows();
@@ -304,57 +309,122 @@ class Session {
         open_file();
     }
 
-    /// Opens the current file of the list; where that cannot be done the old picture stays.
+    /// A file that takes the place of what is shown once it is baked, if it has to be.
+    struct Opening {
+        Options options;
+        bool is_reload;  ///< of what is shown; camera and light stay
+        std::unique_ptr<SourceBake> bake;
+        std::string warning;  ///< the first one
+
+        std::filesystem::path file() const { return bake ? bake->baked() : options.scene; }
+        std::vector<std::filesystem::path> sources() const {
+            return bake ? bake->sources() : std::vector{options.scene};
+        }
+    };
+
+    std::unique_ptr<Scene> first_scene() {
+        const auto bake = bake_of(asked_, device_, tell_user);
+        if (bake) {
+            wait_for(*bake);
+            watch_ = FileWatch(bake->sources());
+        }
+        return std::make_unique<Scene>(load_scene(device_, layouts_,
+                                                  bake ? bake->baked() : asked_.scene,
+                                                  texture_settings(asked_, device_)));
+    }
+
+    /// Opens the current file of the list.
     void open_file() {
-        const std::filesystem::path& path = files_.current();
         // What is set stays, but for camera and light, which begin as at the start.
         Options options = state_.options();
-        options.scene = path;
+        options.scene = files_.current();
         options.camera_position = asked_.camera_position;
         options.camera_target = asked_.camera_target;
         options.vertical_fov = asked_.vertical_fov;
         options.light_position = asked_.light_position;
         options.light_color = asked_.light_color;
-        try {
-            FileWatch watch(path);
-            auto scene = std::make_unique<Scene>(
-                load_scene(device_, layouts_, path, texture_settings(options, device_)));
-            ViewerState state(completed(options, scene->start(), scene->bounds()), scene->bounds(),
-                              aspect_of(extent_));
-            state.set(state.options(), state_.light_moves());
-            presenter_.finish();
-            scene_ = std::move(scene);
-            state_ = std::move(state);
-            watch_ = std::move(watch);
-            reader_.forget(false);
-            title_.set_scene(path.filename().string(), files_.place());
-            title_.set_error({});
-            ui_.say("opened " + path.string(), false);
-            stale_ = true;
-        } catch (const std::runtime_error& error) {
-            report(error.what());
-        }
+        begin_opening(std::move(options), false);
     }
 
-    /// Shows the scene anew when its file has changed; where that is broken the old scene stays.
+    /// Shows the scene anew when its file, or one that it was made of, has changed.
     void follow_the_file() {
         if (seconds_since(last_look_) < kLookSeconds) return;
         last_look_ = Clock::now();
-        if (!watch_.changed()) return;
-        const std::filesystem::path& path = state_.options().scene;
+        if (!opening_ && watch_.changed()) begin_opening(state_.options(), true);
+    }
+
+    /// Where something cannot be opened the old scene stays.
+    void begin_opening(Options options, bool is_reload) {
+        opening_.emplace(Opening{.options = std::move(options), .is_reload = is_reload});
         try {
-            auto scene = std::make_unique<Scene>(
-                reload_scene(device_, layouts_, path, texture_settings(state_.options(), device_)));
-            presenter_.finish();
-            scene_ = std::move(scene);
-            reader_.forget(true);
-            state_.set_bounds(scene_->bounds());
+            opening_->bake = bake_of(opening_->options, device_, [this](const std::string& line) {
+                tell_user(line);
+                if (opening_->warning.empty()) opening_->warning = line;
+            });
+            go_on_opening();
+        } catch (const std::runtime_error& error) {
+            refuse(error.what());
+        }
+    }
+
+    void go_on_opening() {
+        try {
+            if (opening_->bake && !opening_->bake->done(std::chrono::milliseconds(0))) {
+                ui_.say(fmt::format("baking {} {}", opening_->options.scene.filename().string(),
+                                    opening_->bake->progress()),
+                        false);
+                unshown_ = true;
+                return;
+            }
+            opening_->is_reload ? reload() : open();
+            opening_.reset();
             title_.set_error({});
-            ui_.say(fmt::format("{} has changed: reloaded", path.filename().string()), false);
             stale_ = true;
         } catch (const std::runtime_error& error) {
-            report(error.what(), (path.parent_path() / "").string());
+            refuse(error.what());
         }
+    }
+
+    void open() {
+        const Options& options = opening_->options;
+        FileWatch watch(opening_->sources());
+        auto scene = std::make_unique<Scene>(
+            load_scene(device_, layouts_, opening_->file(), texture_settings(options, device_)));
+        ViewerState state(completed(options, scene->start(), scene->bounds()), scene->bounds(),
+                          aspect_of(extent_));
+        state.set(state.options(), state_.light_moves());
+        presenter_.finish();
+        scene_ = std::move(scene);
+        state_ = std::move(state);
+        watch_ = std::move(watch);
+        reader_.forget(false);
+        title_.set_scene(options.scene.filename().string(), files_.place());
+        say_opened("opened " + options.scene.string());
+    }
+
+    void reload() {
+        const std::filesystem::path& path = opening_->options.scene;
+        auto scene = std::make_unique<Scene>(reload_scene(
+            device_, layouts_, opening_->file(), texture_settings(opening_->options, device_)));
+        presenter_.finish();
+        scene_ = std::move(scene);
+        // A bake may have read other files than the one before.
+        if (opening_->bake) watch_ = FileWatch(opening_->sources());
+        reader_.forget(true);
+        state_.set_bounds(scene_->bounds());
+        say_opened(fmt::format("{} has changed: reloaded", path.filename().string()));
+    }
+
+    void say_opened(const std::string& what) {
+        const std::string& warning = opening_->warning;
+        ui_.say(warning.empty() ? what : what + "; " + warning, false);
+    }
+
+    void refuse(const std::string& error) {
+        const std::filesystem::path folder = opening_->options.scene.parent_path() / "";
+        const bool is_reload = opening_->is_reload;
+        opening_.reset();
+        report(error, is_reload ? folder.string() : std::string());
     }
 
     /// False where nothing can be shown now.
@@ -426,6 +496,7 @@ class Session {
     bool unshown_ = true;     ///< the window does not show what it should
     Shot wanted_ = Shot::none;
     bool idle_ = false;  ///< nothing happens until something is done
+    std::optional<Opening> opening_;
     bool ended_ = false;
 };
 

@@ -345,14 +345,17 @@ void SourceBake::remove_old_entries() const {
     }
 }
 
-std::unique_ptr<SourceBake> bake_of(const Options& options, const Device& device) {
+std::unique_ptr<SourceBake> bake_of(const Options& options, const Device& device,
+                                    std::function<void(const std::string&)> tell) {
     if (!is_source(options.scene)) return nullptr;
-    return std::make_unique<SourceBake>(
-        options.scene,
-        BakeSettings{.z_up = options.z_up,
-                     .strict = options.strict,
-                     .uncompressed = device.is_cpu() || !device.samples_blocks()},
-        [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+    const BakeSettings settings{.z_up = options.z_up,
+                                .strict = options.strict,
+                                .uncompressed = device.is_cpu() || !device.samples_blocks()};
+    return std::make_unique<SourceBake>(options.scene, settings, std::move(tell));
+}
+
+void tell_user(const std::string& line) {
+    fmt::print(stderr, "{}\n", line);
 }
 
 void wait_for(SourceBake& bake) {

@@ -81,8 +81,12 @@ class SourceBake {
 };
 
 /// The bake of the scene that the options name, in the form that suits the device; null if it is
-/// baked already. Prints what cw2-bake says to standard error.
-std::unique_ptr<SourceBake> bake_of(const Options& options, const Device& device);
+/// baked already. `tell` is given what cw2-bake says.
+std::unique_ptr<SourceBake> bake_of(const Options& options, const Device& device,
+                                    std::function<void(const std::string& line)> tell);
+
+/// Prints a line to standard error.
+void tell_user(const std::string& line);
 
 /// Waits until it is done, and shows on a terminal how far it is. Throws as done() does.
 void wait_for(SourceBake& bake);

@@ -6,20 +6,25 @@
 
 namespace cw2 {
 
-FileWatch::FileWatch(std::filesystem::path path)
-    : path_(std::move(path)), known_(look()), latest_(known_) {}
+FileWatch::FileWatch(std::vector<std::filesystem::path> paths)
+    : paths_(std::move(paths)), known_(look()), latest_(known_) {}
 
-std::optional<FileWatch::Stamp> FileWatch::look() const {
-    struct stat status {};
-    if (stat(path_.c_str(), &status) != 0) return std::nullopt;
-    return Stamp{status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
-                 status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+FileWatch::Stamps FileWatch::look() const {
+    Stamps stamps;
+    for (const std::filesystem::path& path : paths_) {
+        struct stat status {};
+        auto& stamp = stamps.emplace_back();
+        if (stat(path.c_str(), &status) == 0)
+            stamp = Stamp{status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
+                          status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+    }
+    return stamps;
 }
 
 bool FileWatch::changed() {
-    const std::optional<Stamp> now = look();
+    const Stamps now = look();
     const bool settled = now == std::exchange(latest_, now);
-    if (!settled || !now || now == known_) return false;
+    if (!settled || !now.front() || now == known_) return false;
     known_ = now;
     return true;
 }

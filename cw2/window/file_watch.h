@@ -1,20 +1,21 @@
-// Tells when a file has become another one.
+// Tells when files have become other ones.
 #pragma once
 
 #include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 namespace cw2 {
 
 class FileWatch {
  public:
-    /// From the file as it is now.
-    explicit FileWatch(std::filesystem::path path);
+    /// From the files as they are now. There is at least one; all but the first may be missing.
+    explicit FileWatch(std::vector<std::filesystem::path> paths);
 
-    /// Whether the file has changed since the last time this was true, and was the same at the
-    /// last two calls: whoever writes it is probably done. Never while there is no file.
+    /// Whether a file has changed since the last time this was true, and all were the same at the
+    /// last two calls: whoever writes them is probably done. Never while the first is missing.
     bool changed();
 
  private:
@@ -27,11 +28,12 @@ class FileWatch {
         std::int64_t nanoseconds;
         auto operator<=>(const Stamp&) const = default;
     };
-    std::optional<Stamp> look() const;
+    using Stamps = std::vector<std::optional<Stamp>>;
+    Stamps look() const;
 
-    std::filesystem::path path_;
-    std::optional<Stamp> known_;
-    std::optional<Stamp> latest_;
+    std::vector<std::filesystem::path> paths_;
+    Stamps known_;
+    Stamps latest_;
 };
 
 }  // namespace cw2

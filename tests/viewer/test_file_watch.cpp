@@ -21,12 +21,12 @@ class FileWatch : public testing::Test {
 };
 
 TEST_F(FileWatch, AFileThatStaysHasNotChanged) {
-    cw2::FileWatch watch(path_);
+    cw2::FileWatch watch({path_});
     for (int look = 0; look < 3; ++look) EXPECT_FALSE(watch.changed());
 }
 
 TEST_F(FileWatch, AChangeIsToldOnceAndOnlyWhenItHasComeToRest) {
-    cw2::FileWatch watch(path_);
+    cw2::FileWatch watch({path_});
     write("half of");
     EXPECT_FALSE(watch.changed());
     write("half of another");
@@ -36,12 +36,25 @@ TEST_F(FileWatch, AChangeIsToldOnceAndOnlyWhenItHasComeToRest) {
 }
 
 TEST_F(FileWatch, AFileThatIsGoneHasNotChangedUntilAnotherIsThere) {
-    cw2::FileWatch watch(path_);
+    cw2::FileWatch watch({path_});
     std::filesystem::remove(path_);
     for (int look = 0; look < 3; ++look) EXPECT_FALSE(watch.changed());
     write("quite another");
     EXPECT_FALSE(watch.changed());
     EXPECT_TRUE(watch.changed());
+}
+
+TEST_F(FileWatch, AnyOfSeveralFilesCounts) {
+    const std::filesystem::path other = path_.string() + ".other";
+    cw2::FileWatch watch({path_, other});
+    EXPECT_FALSE(watch.changed());
+    std::ofstream(other) << "it has come";
+    EXPECT_FALSE(watch.changed());
+    EXPECT_TRUE(watch.changed());
+    std::filesystem::remove(other);
+    EXPECT_FALSE(watch.changed());
+    EXPECT_TRUE(watch.changed());
+    EXPECT_FALSE(watch.changed());
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ class Source {
             if (event.type == SelectionRequest) answer(event.xselectionrequest);
             if (event.type != ClientMessage) continue;
             const Atom message = event.xclient.message_type;
-            const bool accepted = (event.xclient.data.l[1] & 1) != 0;
+            // GLFW 3.3 finishes with the number of bytes that it took instead of bit 0.
+            const bool accepted = event.xclient.data.l[1] != 0;
             if (message == atom("XdndStatus")) {
                 if (!accepted) return false;
                 send("XdndDrop", {source, 0, CurrentTime});

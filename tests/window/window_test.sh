@@ -358,6 +358,32 @@ check_explains_itself() {
     close_window
 }
 
+# OBJs are baked into the cache, at the start, when opened and when a source has changed.
+check_bakes_what_it_opens() {
+    export XDG_CACHE_HOME=$work/cache
+    local name square='v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl a\nf 1 2 3 4\n'
+    mkdir "$work/obj"
+    for name in first second; do
+        printf "mtllib $name.mtl\n$square" >"$work/obj/$name.obj"
+        printf 'newmtl a\nKd 1 0 0\n' >"$work/obj/$name.mtl"
+    done
+    local scene=$work/obj/first.obj
+    open_window "$cw2" "$scene" "$work/obj/second.obj" --size 256x144 --samples 1
+    wait_until title_has "first.obj (1 of 2)"
+    take_picture
+    local red=$picture
+    expect_headless --size 256x144 --samples 1
+    scene=$work/obj/second.obj
+    press Next
+    wait_until title_has "second.obj (2 of 2)"
+    take_picture
+    expect_same "$red" "$picture"
+    printf 'newmtl a\nKd 0 1 0\n' >"$work/obj/second.mtl"
+    wait_until picture_differs_from "$red"
+    expect_headless --size 256x144 --samples 1
+    close_window
+}
+
 check_opens_other_files() {
     local other=$work/other.cw2mesh broken=$work/broken.cw2mesh
     "${cw2%/*}/cw2-bake" "${scene%/*}/plate.obj" -o "$other" --quiet --textures none
