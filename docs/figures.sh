@@ -55,7 +55,7 @@ view-direction $day --view view-direction
 light-direction $day --view light-direction
 light-front $court --light-position 4,7,5
 light-low $court --light-position 6.5,0.4,2.5
-light-arcade $court --light-position 2,2.2,-5.2
+light-arcade $court --light-position -2,2.2,-5.2
 light-behind $court --light-position -6,1.6,-1
 lion-right $lion --fov 42 --light-position 5,4.5,2.5
 lion-left $lion --fov 42 --light-position 0,4,5

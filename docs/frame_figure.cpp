@@ -26,7 +26,7 @@
 namespace {
 
 constexpr cw2::ValueRange kDegrees{1e-4f, 10.0f};
-constexpr int kLegendHeight = 21;
+constexpr int kLegendHeight = 63;
 
 struct Picture {
     int width = 0;
