@@ -7,7 +7,7 @@ namespace cw2 {
 std::string controls_text() {
     std::string text = "In the window:\n";
     for (const Control& control : kControls) {
-        text += fmt::format("  {:<28}{}\n", control.input, control.does);
+        text += fmt::format("  {:<30}{}\n", control.input, control.does);
     }
     return text;
 }
