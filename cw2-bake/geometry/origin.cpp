@@ -42,7 +42,14 @@ std::optional<glm::dvec3> distant_origin(std::span<const glm::vec3> positions,
     const Reach some = reach_of(positions, corners, corners.size() / kLooks + 1);
     if (some.largest < (kDistant - 1.0) * some.extent) return std::nullopt;
     const Reach all = reach_of(positions, corners, 1);
-    if (all.largest <= kDistant * all.extent || all.extent == 0.0) return std::nullopt;
+    if (all.largest <= kDistant * all.extent) return std::nullopt;
+    if (all.extent == 0.0) {
+        // Floats do not tell them apart, or they are one point.
+        const auto is_first = [&](const Corner& corner) {
+            return corner.position == corners.front().position;
+        };
+        return std::ranges::all_of(corners, is_first) ? std::nullopt : std::optional(all.center);
+    }
     const double unit = std::exp2(std::ceil(std::log2(all.extent)));
     return glm::round(all.center / unit) * unit;
 }

@@ -39,11 +39,15 @@ SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn) {
     GltfNodes nodes = walk_nodes(file, warn);
     decode_draco(file, shown_meshes(file, nodes));
     SourceScene scene = triangles_of(file, nodes, warn);
-    if (const auto origin = distant_origin(scene.positions, scene.corners)) {
+    glm::dvec3 origin{0.0};
+    for (int i = 0; i < kMostOrigins; ++i) {
+        const auto distant = distant_origin(scene.positions, scene.corners);
+        if (!distant) break;
+        origin += *distant;
         for (glm::dmat4& world_from_node : nodes.world_from_node)
-            world_from_node[3] -= glm::dvec4(*origin, 0.0);
+            world_from_node[3] -= glm::dvec4(*distant, 0.0);
         scene = triangles_of(file, nodes, [](const std::string&) {});
-        scene.origin = *origin;
+        scene.origin = origin;
     }
     scene.files = file.buffer_files;
     scene.files.insert(scene.files.begin(), path);
