@@ -53,10 +53,12 @@ SourceScene read_scene(const std::filesystem::path& path, const Warn& warn) {
     }
 }
 
-/// Throws BakeError if the box of the packed scene, or its radius, is beyond what floats hold.
+/// Throws BakeError if the box of the packed scene is beyond what floats hold, or its radius so
+/// near that something at a few radii would be.
 void check_extent(const mesh_format::SceneRecord& packed, const SourceScene& scene,
                   const std::filesystem::path& path) {
-    bool finite = std::isfinite(packed.radius);
+    constexpr float kLargestRadius = std::numeric_limits<float>::max() / 8.0f;
+    bool finite = packed.radius <= kLargestRadius;
     for (int axis = 0; axis < 3; ++axis) {
         finite &= std::isfinite(packed.bounds_min[axis]) && std::isfinite(packed.bounds_max[axis]);
     }

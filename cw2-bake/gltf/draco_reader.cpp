@@ -6,6 +6,8 @@
 #include <draco/compression/decode.h>
 #include <draco/mesh/mesh.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -52,7 +54,38 @@ void copy_attribute(const draco::PointAttribute& from, std::size_t vertices, Dra
     }
 }
 
+/// A number of the stream: of 7 bits a byte, or before version 2 of 4 bytes.
+std::uint64_t take_count(std::span<const std::byte>& data, bool packed) {
+    std::uint64_t value = 0;
+    for (int i = 0; i < (packed ? 9 : 4) && !data.empty(); ++i) {
+        const auto byte = std::to_integer<std::uint64_t>(data.front());
+        data = data.subspan(1);
+        value |= packed ? (byte & 127) << 7 * i : byte << 8 * i;
+        if (packed && byte < 128) break;
+    }
+    return value;
+}
+
+/// The library takes memory for as many triangles as an edgebreaker stream claims to hold, before
+/// it looks at what follows. Real ones hold a few a byte, and at most some hundreds.
+/// See https://google.github.io/draco/spec/, sections 3.1 and 7.1.
+void check_claims(std::span<const std::byte> data) {
+    constexpr std::size_t kHeaderBytes = 11;
+    if (data.size() <= kHeaderBytes) return;
+    const auto at = [&](std::size_t i) { return std::to_integer<int>(data[i]); };
+    const int version = 256 * at(5) + at(6);
+    const bool is_edgebreaker = at(8) == 1, has_metadata = (at(10) & 0x80) != 0;
+    if (!is_edgebreaker || has_metadata) return;
+    std::span<const std::byte> rest = data.subspan(kHeaderBytes + 1);
+    const bool packed = version >= 0x200;
+    if (version < 0x202) take_count(rest, packed);
+    const std::uint64_t vertices = take_count(rest, packed), triangles = take_count(rest, packed);
+    if (std::max(vertices, triangles) > (1u << 20) + (std::uint64_t{data.size()} << 12))
+        throw std::runtime_error("it claims to hold more than its bytes can");
+}
+
 void read(std::span<const std::byte> data, DracoMesh& mesh) {
+    check_claims(data);
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(data.data()), data.size());
     draco::Decoder decoder;

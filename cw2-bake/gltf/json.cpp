@@ -217,12 +217,23 @@ void check_version(json& root, const Checker& checker) {
                  fmt::format("is glTF {}; only 2.0 is read", is_version ? text : in_quotes(text)));
 }
 
+/// Whether every texture of a KTX2 has another image, too, so that none is lacked.
+bool has_images_beside_ktx2(const json& root) {
+    const auto textures = root.find("textures");
+    return textures == root.end() || std::ranges::all_of(*textures, [](const json& texture) {
+               const auto extensions = texture.find("extensions");
+               return extensions == texture.end() || !extensions->contains(kBasisuExtension) ||
+                      texture.contains("source");
+           });
+}
+
 void check_required_extensions(const json& root, const Checker& checker) {
     const auto required = root.find("extensionsRequired");
     if (required == root.end()) return;
     for (std::size_t i = 0; i < required->size(); ++i) {
         const std::string& name = (*required)[i].get_ref<const std::string&>();
         if (is_known_extension(name)) continue;
+        if (name == kBasisuExtension && has_images_beside_ktx2(root)) continue;
         checker.fail(fmt::format("/extensionsRequired/{}", i),
                      fmt::format("the extension {} is not supported{}", in_quotes(name),
                                  name == kBasisuExtension ? ": KTX2 textures are not read" : ""));

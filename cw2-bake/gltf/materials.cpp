@@ -111,6 +111,9 @@ void GltfMaterials::take_mask(const tinygltf::Material& material, const std::str
         const bool hides_all = cutoff > alpha;
         result.visible = !hides_all;
         source.alpha_cutoff = alpha > 0.0 && !hides_all ? clamped(cutoff / alpha) : 0.0f;
+        // Stated as such, the mask counts even if it hides everything.
+        if ((source.maps[MapUse::alpha_mask] = source.maps[MapUse::base_color]))
+            source.maps[MapUse::alpha_mask]->channel = Channel::alpha;
         if (hides_all) {
             warn_(fmt::format("{}: {} is invisible: its alpha is below its cutoff", place,
                               in_quotes(source.name)));
@@ -224,14 +227,8 @@ void warn_of_blending(std::span<const SourceMaterial> materials,
                     "{}: {} is blended; it is drawn with a mask that cuts below alpha 0.5",
                     map->stated_in, in_quotes(materials[i].name));
             }
-        } else if (opaque++ == 0) {
-            first_opaque =
-                map->stated_in + ": " +
-                (materials[i].opacity < 1.0f
-                     ? drawn_opaque(materials[i])
-                     : in_quotes(materials[i].name) +
-                           " is blended, but its texture's alpha is nowhere below 0.5; drawn "
-                           "opaque");
+        } else if (materials[i].opacity < 1.0f && opaque++ == 0) {
+            first_opaque = map->stated_in + ": " + drawn_opaque(materials[i]);
         }
     }
     warn_of_first(first_masked, masked, warn);

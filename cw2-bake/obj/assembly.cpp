@@ -96,6 +96,7 @@ class Assembly {
     VertexColors colors_;
     std::vector<ObjNote> notes_;
     bool has_invalid_ = false;
+    bool has_zero_normal_ = false;
     std::array<std::optional<ObjError>, 3> bad_element_;
 };
 
@@ -123,6 +124,7 @@ bool Assembly::resolve(ObjChunk& chunk) const {
 void Assembly::append_chunk(ObjChunk& chunk, std::size_t text_bytes_left) {
     if (chunk.error) throw_at(text_, name_, *chunk.error);
     has_invalid_ |= chunk.has_invalid;
+    has_zero_normal_ |= chunk.has_zero_normal;
     if (chunk.has_relative && !resolve(chunk)) has_invalid_ = true;
     append_materials(chunk);
     append_notes(chunk);
@@ -204,11 +206,12 @@ void Assembly::append_notes(const ObjChunk& chunk) {
     contents_.lacks_normals |= chunk.lacks_normals;
 }
 
-/// Whether all elements are numbers, and all indices in range.
+/// Whether all elements are numbers, all normals have a length, and all indices in range.
 bool Assembly::all_good() const {
     const ObjCounts counts = counts_of(contents_.scene);
-    return !has_invalid_ && !bad_element_[kObjUv] && !bad_element_[kObjNormal] &&
-           max_index_[0] <= counts[0] && max_index_[1] <= counts[1] && max_index_[2] <= counts[2];
+    return !has_invalid_ && !has_zero_normal_ && !bad_element_[kObjUv] &&
+           !bad_element_[kObjNormal] && max_index_[0] <= counts[0] && max_index_[1] <= counts[1] &&
+           max_index_[2] <= counts[2];
 }
 
 /// Parses the statement of a triangle again, now that the bounds of its indices are known.
@@ -247,8 +250,9 @@ void Assembly::warn_of_missing(ObjAttribute attribute, std::size_t count,
     const Face face = parse_face(first_triangle);
     const std::optional<ObjError>& index = face.parsed.bad_index[attribute];
     const std::string why =
-        index ? index->what
-              : fmt::format("line {}: {}", line_number(text_, element->offset), element->what);
+        index      ? index->what
+        : !element ? "its length is 0"
+                   : fmt::format("line {}: {}", line_number(text_, element->offset), element->what);
     contents_.warnings.push_back(
         {face.offset, fmt::format("{} {} a {} that is missing; {} ({})", count,
                                   count == 1 ? "corner has" : "corners have", name,

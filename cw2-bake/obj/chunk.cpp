@@ -31,6 +31,7 @@ void ObjChunk::clear() {
     text_bytes = {};
     has_relative = false;
     has_invalid = false;
+    has_zero_normal = false;
     lacks_normals = false;
     error.reset();
 }

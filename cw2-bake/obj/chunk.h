@@ -106,17 +106,17 @@ using ObjTriangle = std::array<Corner, 3>;
 inline constexpr std::size_t kObjFaceText = 3;
 
 struct ObjChunk {
-    /// Scaled to length 1, if it has one.
+    /// Scaled to length 1, or NaN where it has none.
     void add_normal(const glm::vec3& v) {
         const double x = v.x, y = v.y, z = v.z;
         const double length = std::sqrt(x * x + y * y + z * z);
-        lacks_normals |= length == 0;
-        normals.push_back(length > 0 ? glm::vec3(x / length, y / length, z / length) + 0.0f : v);
+        has_zero_normal |= length == 0;
+        normals.push_back(glm::vec3(x / length, y / length, z / length) + 0.0f);
     }
 
     std::vector<glm::vec3> positions;
     std::vector<glm::vec2> uvs;      ///< NaN where the line holds no finite number
-    std::vector<glm::vec3> normals;  ///< of length 1, or 0; or NaN in the same way
+    std::vector<glm::vec3> normals;  ///< of length 1; or NaN, in the same way or of length 0
     std::vector<ObjColor> colors;
     std::vector<ObjPolypaint> polypaint;
     /// Indices are from 0 or relative, see kObjRelative; or kObjInvalid.
@@ -132,6 +132,7 @@ struct ObjChunk {
     ObjCounts max_index{};                    ///< the largest that is not relative, from 1
     std::array<std::size_t, 4> text_bytes{};  ///< of v, vt, vn and f lines; see kObjFaceText
     bool has_relative = false;
+    bool has_zero_normal = false;   ///< some is NaN for that
     bool has_invalid = false;       ///< some index is kObjInvalid
     bool lacks_normals = false;     ///< some corner states no normal, or some normal is 0
     std::optional<ObjError> error;  ///< the first one; nothing after it is read

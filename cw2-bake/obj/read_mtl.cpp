@@ -244,7 +244,10 @@ void MtlReader::other_statement(const std::string& key, std::string_view keyword
     if (key == "ka" || key == "ks" || key == "ni" || key.empty() || key.starts_with('#')) return;
     if (key == "illum") {
         const auto model = as_number(take_word(words));
-        if (model && (*model < 0 || *model > 2)) {
+        if (model == 4.0f || model == 9.0f) {
+            material_.left_out.push_back(
+                {"glass", place(), "illum 4 or 9, glass, is not supported and left out"});
+        } else if (model && (*model < 0 || *model > 2)) {
             note("illum 3 to 10, reflections and refraction, are not supported and left out",
                  fmt::format("{}", *model));
         }
@@ -314,7 +317,11 @@ void MtlReader::note_left_out(const Statements& stated) {
         return std::ranges::any_of(stated.left_out,
                                    [=](const auto& left) { return left.key == key; });
     };
+    const bool opaque = stated.d.value_or(1.0f) >= 1 && stated.tr.value_or(0.0f) <= 0 &&
+                        !stated.map_d && !has("tf");
     for (const Statements::LeftOut& left : stated.left_out) {
+        // Maya states glass of everything.
+        if (left.key == "glass" && opaque) continue;
         // Blender states a coat's roughness without a coat, too.
         if ((left.key == "pcr" && !has("pc")) || (left.key == "anisor" && !has("aniso"))) continue;
         notes_.add(left.kind, left.place, "", material_count_);

@@ -62,16 +62,10 @@ void triangulate_polygons(const std::vector<ObjPolygon>& polygons, SourceScene& 
     });
 }
 
-/// Forgets normals of no length, and says which triangles are smoothed if some corner now has none.
+/// Says which triangles are smoothed if some corner has no normal.
 void prepare_missing_normals(const std::vector<ObjSmoothingUse>& uses, SourceScene& scene) {
-    bool complete = true;
-    for (Corner& corner : scene.corners) {
-        if (corner.normal != kAbsent && scene.normals[corner.normal] == glm::vec3{0.0f}) {
-            corner.normal = kAbsent;
-        }
-        complete &= corner.normal != kAbsent;
-    }
-    if (complete) return;
+    const auto lacks_normal = [](const Corner& corner) { return corner.normal == kAbsent; };
+    if (std::ranges::none_of(scene.corners, lacks_normal)) return;
     scene.smoothing_group.resize(scene.triangle_material.size(), 0);
     for (std::size_t i = 0; i < uses.size(); ++i) {
         const std::size_t end =
@@ -263,15 +257,16 @@ void Libraries::read(const std::vector<ObjStatement>& statements,
 }
 
 /// The warning of a missing library covers the materials that may be in it. A `usemtl` without a
-/// name asks for nothing but what such a `newmtl` holds, if there is one.
+/// name, or with "(null)", as Blender's first exporter says that a face has none, asks for nothing
+/// but what such a `newmtl` holds, if there is one.
 void Libraries::warn_of_unknown(const std::vector<MtlMaterial>& materials,
                                 const std::vector<std::optional<std::size_t>>& offsets) const {
     if (some_missing_) return;
     for (std::size_t i = 0; i < materials.size(); ++i) {
-        if (materials[i].source.name.empty() || !unknown_.contains(materials[i].source.name))
-            continue;
+        const std::string& material = materials[i].source.name;
+        if (material.empty() || material == "(null)" || !unknown_.contains(material)) continue;
         warn_(fmt::format("{}: no material library defines {}; a default is used",
-                          place(offsets[i].value()), in_quotes(materials[i].source.name)));
+                          place(offsets[i].value()), in_quotes(material)));
     }
 }
 
@@ -288,8 +283,11 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
     }
 
     ObjContents contents = parse_obj(text, name, chunk_bytes);
-    if (const auto origin = distant_origin(contents.scene.positions, contents.scene.corners))
-        contents = parse_obj(text, name, chunk_bytes, *origin);
+    for (int i = 0; i < kMostOrigins; ++i) {
+        const auto origin = distant_origin(contents.scene.positions, contents.scene.corners);
+        if (!origin) break;
+        contents = parse_obj(text, name, chunk_bytes, contents.scene.origin + *origin);
+    }
     SourceScene& scene = contents.scene;
     if (scene.corners.empty()) throw BakeError(name + ": has no faces");
     for (const ObjError& warning : contents.warnings) {

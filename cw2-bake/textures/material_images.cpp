@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstring>
 #include <glm/geometric.hpp>
+#include <new>
 #include <span>
 
+#include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/textures/block_compression.h"
 #include "cw2-bake/textures/mip_chain.h"
 #include "cw2-bake/textures/relief.h"
@@ -102,7 +104,11 @@ std::optional<Mask> find_mask(const ImageRequest& request, const Image* color, c
     }
     const float limit = shown_from(request.alpha_cutoff);
     const bool hides = mask && mask->range.smallest < limit;
-    if (!hides) return std::nullopt;
+    if (!hides) {
+        if (mask && request.color_is_blended && mask->range.smallest < 1.0f)
+            warn(*mask->map, "its alpha is nowhere below 0.5: drawn opaque, not blended", result);
+        return std::nullopt;
+    }
     // Alpha of a colour that leaves nothing is gloss, or height, or a mistake.
     constexpr double kLeastShare = 0.005;
     if (!alpha && share_shown(mask->texels, limit) < kLeastShare) {
@@ -281,6 +287,7 @@ RequestSettings settings_of(const ImageRequest& request) {
             settings_of(request.relief),
             request.alpha_cutoff,
             request.color_alpha_is_mask,
+            request.color_is_blended,
             request.bump_scale,
             request.relief_is_bump,
             request.normal_scale,
@@ -307,7 +314,7 @@ const Image& ImageCache::get(const TextureMap& map) {
     return images_.emplace(map.file, std::move(image)).first->second;
 }
 
-ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCache& images) {
+ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCache& images) try {
     ImageResult result;
     switch (request.kind) {
         case ImageRequest::Kind::surface:
@@ -329,6 +336,10 @@ ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCa
         if (result.alpha_mask) compress_to_blocks(*result.alpha_mask, request.alpha_cutoff);
     }
     return result;
+} catch (const std::bad_alloc&) {
+    const TextureMap& map = first_map(request);
+    throw BakeError(map.stated_in + ": " + map.file.string() +
+                    ": there is not enough memory to make its texture");
 }
 
 }  // namespace bake

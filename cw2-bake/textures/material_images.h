@@ -29,6 +29,7 @@ struct ImageRequest {
     std::optional<TextureMap> alpha_map{};  ///< of a surface; it or `map` is there
     float alpha_cutoff = 0.0f;              ///< of a surface
     bool color_alpha_is_mask = true;        ///< of a surface, where there is no alpha_map
+    bool color_is_blended = false;          ///< of a surface: what its alpha asks for
     float bump_scale = 0.0f;                ///< of a bump, also as a relief
     std::optional<TextureMap> relief{};     ///< of roughness
     bool relief_is_bump = false;
@@ -39,7 +40,7 @@ struct ImageRequest {
 /// Everything that the textures of a request depend on, but what its images hold: numbers only.
 using MapSettings = std::tuple<bool, Channel, bool>;
 using RequestSettings = std::tuple<ImageRequest::Kind, MapSettings, MapSettings, MapSettings, float,
-                                   bool, float, bool, float, float>;
+                                   bool, bool, float, bool, float, float>;
 RequestSettings settings_of(const ImageRequest& request);
 
 /// The map whose image is read for a request whatever it holds.
@@ -74,7 +75,7 @@ class ImageCache {
 
 /// Reads, filters, and in mode bc compresses. A map whose image cannot be used counts as absent.
 /// What says nothing makes no texture: a mask that hides nothing, a normal map that is flat. An
-/// image of one value becomes 1 x 1.
+/// image of one value becomes 1 x 1. Throws BakeError where memory runs out.
 ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCache& images);
 
 /// What make_textures() calls the texture and the mask of a request whose images it can use.

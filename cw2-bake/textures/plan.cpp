@@ -53,11 +53,13 @@ TexturePlan make_plan(std::span<const SourceMaterial> materials, TextureMode mod
     };
     for (const SourceMaterial& material : materials) {
         MaterialRequests uses = mesh_format::per_map(kNoRequest);
-        uses[MapUse::base_color] = add({.kind = ImageRequest::Kind::surface,
-                                        .map = material.maps[MapUse::base_color],
-                                        .alpha_map = material.maps[MapUse::alpha_mask],
-                                        .alpha_cutoff = material.alpha_cutoff,
-                                        .color_alpha_is_mask = material.base_color_alpha_is_mask});
+        uses[MapUse::base_color] =
+            add({.kind = ImageRequest::Kind::surface,
+                 .map = material.maps[MapUse::base_color],
+                 .alpha_map = material.maps[MapUse::alpha_mask],
+                 .alpha_cutoff = material.alpha_cutoff,
+                 .color_alpha_is_mask = material.base_color_alpha_is_mask,
+                 .color_is_blended = material.blend && material.opacity >= 1.0f});
         uses[MapUse::roughness] = add(roughness_request(material, mode));
         uses[MapUse::metalness] =
             add({.kind = ImageRequest::Kind::scalar, .map = material.maps[MapUse::metalness]});

@@ -1,4 +1,5 @@
 // Inputs at the ends of what can be: no area, coordinates near the largest float, no memory.
+#include "common/encode_png.h"
 #include "tests/cli/scene_folder.h"
 
 namespace {
@@ -24,14 +25,18 @@ TEST_F(Limits, AnExportThatWouldShowNothingIsRefused) {
 TEST_F(Limits, CoordinatesNearTheLargestFloatAreBlamedOnTheInput) {
     for (const char* text : {"v 0 0 -1e30\nv 3.40282e38 0 0\nv 0 1 0\nf 1 2 3\n",
                              "v 1e-30 1500 0\nv 0 5 -1e30\nv 3.40282e38 0 0\nf 1 2 3\nf 3 2 1\n",
+                             "v 3e38 0 0\nv -3e38 0 0\nv 0 3e38 0\nf 1 2 3\n",
                              "v 3e38 3e38 3e38\nv -3e38 -3e38 -3e38\nv 0 1 0\nf 1 2 3\n"}) {
         write("far.obj", text);
         for (const char* output : {"far.cw2mesh", "far.glb"}) {
-            const Outcome outcome =
-                bake({"far.obj", "-o", output, "--positions", "quantised", "--quiet"});
-            EXPECT_EQ(outcome.status, 1);
-            EXPECT_TRUE(outcome.err.starts_with("cw2-bake: far.obj: its extent, ")) << outcome.err;
-            EXPECT_FALSE(std::filesystem::exists(here(output)));
+            for (const char* positions : {"quantised", "f32"}) {
+                const Outcome outcome =
+                    bake({"far.obj", "-o", output, "--positions", positions, "--quiet"});
+                EXPECT_EQ(outcome.status, 1);
+                EXPECT_TRUE(outcome.err.starts_with("cw2-bake: far.obj: its extent, "))
+                    << outcome.err;
+                EXPECT_FALSE(std::filesystem::exists(here(output)));
+            }
         }
     }
 }
@@ -46,6 +51,25 @@ TEST_F(Limits, ALackOfMemorySaysWhatWasRead) {
                                 {{}, folder_.path()});
     EXPECT_EQ(outcome.status, 1);
     EXPECT_EQ(outcome.err, "cw2-bake: many.obj: there is not enough memory to read it\n");
+}
+
+TEST_F(Limits, ALackOfMemoryForATextureNamesItsImage) {
+    constexpr int kSize = 4000;
+    const std::vector<std::byte> texels(std::size_t{3} * kSize * kSize, std::byte{90});
+    const auto png = common::encode_png({.width = kSize,
+                                         .height = kSize,
+                                         .channels = common::PngPicture::Channels::rgb,
+                                         .says_srgb = false,
+                                         .texels = texels});
+    write("big.png", {reinterpret_cast<const char*>(png.data()), png.size()});
+    write("m.mtl", "newmtl m\nmap_Kd big.png\n");
+    write("one.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+    const Outcome outcome = run({"/bin/bash", "-c", "ulimit -v 140000; exec \"$0\" \"$@\"",
+                                 BAKE_PROGRAM, "one.obj", "--quiet", "--threads", "1"},
+                                {{}, folder_.path()});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.err,
+              "cw2-bake: m.mtl:2: big.png: there is not enough memory to make its texture\n");
 }
 #endif
 

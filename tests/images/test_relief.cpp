@@ -261,6 +261,23 @@ TEST(AlphaOfTheColour, ThatLeavesNothingIsNoMask) {
     EXPECT_EQ(leaves.warnings, std::vector<std::string>());
 }
 
+TEST(AlphaOfTheColour, OfABlendedMaterialIsToldUnlessItIsOne) {
+    const TemporaryFolder folder;
+    const auto blended = [&](double alpha) {
+        write_image(folder / "a.png", kSize, kSize, 4, [&](int x, int) {
+            return std::vector{0.2, 0.4, 0.6, x == 3 ? alpha : 1.0};
+        });
+        SourceMaterial material;
+        material.maps[MapUse::base_color] = map_of(folder / "a.png", "a.mtl:7");
+        material.blend = true;
+        return make(material).warnings;
+    };
+    EXPECT_EQ(blended(1.0), std::vector<std::string>());
+    EXPECT_EQ(blended(0.6),
+              std::vector{"a.mtl:7: " + (folder / "a.png").string() +
+                          ": its alpha is nowhere below 0.5: drawn opaque, not blended"});
+}
+
 TEST(AMapOfTheMask, ThatHidesEverythingIsKeptAndNamed) {
     const TemporaryFolder folder;
     write_image(folder / "mask.png", 4, 4, 1, [](int, int) { return std::vector{0.2}; });

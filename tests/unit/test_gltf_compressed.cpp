@@ -284,6 +284,22 @@ TEST_F(GltfDraco, EveryTruncationIsRefused) {
     }
 }
 
+// 100 million triangles, of which the library would make tables before it reads them.
+TEST_F(GltfDraco, ClaimsBeyondWhatBytesHoldAreRefused) {
+    std::vector<std::uint8_t> data{'D',  'R',  'A',  'C', 'O',  2,    2,    1,
+                                   1,    0,    0,    0,   0x80, 0xE1, 0xEB, 0x17,  // vertices
+                                   0x80, 0xC2, 0xD7, 0x2F};                        // triangles
+    data.resize(200, 1);
+    const std::string refusal =
+        place_ + "its Draco data is damaged: it claims to hold more than its bytes can";
+    EXPECT_EQ(error(square(data)), refusal);
+    // Before version 2 numbers were not packed, and there was one more.
+    data = {'D', 'R', 'A', 'C', 'O',  1,    3,    1,    1,    0,    0,    0,
+            0,   0,   0,   0,   0x80, 0xF0, 0xFA, 0x02, 0x00, 0xE1, 0xF5, 0x05};
+    data.resize(200, 1);
+    EXPECT_EQ(error(square(data)), refusal);
+}
+
 TEST_F(GltfDraco, OnlyTrianglesAreDecoded) {
     GltfWriter gltf = square({0});
     primitive(gltf)["mode"] = 1;

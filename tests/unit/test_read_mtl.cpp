@@ -227,8 +227,9 @@ TEST_F(ReadMtl, WarnsOnceOfEachStatementThatIsNotRead) {
         left_out(14, "what", 1),
         left_out(13, "sharpness", 1),
         left_out(20, "decal", 1),
-        "m.mtl:5: illum 3 to 10, reflections and refraction, are not supported and left out, the "
-        "first 4 (2 materials)"};
+        "m.mtl:5: illum 4 or 9, glass, is not supported and left out (1 material)",
+        "m.mtl:10: illum 3 to 10, reflections and refraction, are not supported and left out, the "
+        "first 7 (1 material)"};
     std::ranges::sort(expected);
     std::ranges::sort(warnings_);
     EXPECT_EQ(warnings_, expected);
@@ -240,7 +241,8 @@ TEST_F(ReadMtl, SaysNothingOfWhatEveryExporterWrites) {
         "newmtl a\nNs 250\nKa 1 1 1\nKs 0.5 0.5 0.5\nKe 0 0 0\nNi 1.45\nd 1\nillum 2\nTr 0\n"
         "Tf 1.0 1.00 1\nmap_Ks\nmap_Kd a b.png\nmap_Ka a b.png\nmap_aat on\n# note\n\nillum 0\n"
         "newmtl b\nPr 0.5\nPm 0\nPs 0.000000\nPc 0.0\nPcr 0.03\naniso 0\nanisor 0.5\nTf 0 0 0\n"
-        "sharpness 60\nillum 1\nTf 1\nKe 0 # dark\n");
+        "sharpness 60\nillum 1\nTf 1\nKe 0 # dark\n"
+        "newmtl c\nillum 4\nKd 0 0 0\nKa 0 0 0\nTf 1.00 1.00 1.00\nd 1\nmap_Kd a.png\nNi 1.00\n");
     EXPECT_EQ(warnings_, std::vector<std::string>{});
 }
 

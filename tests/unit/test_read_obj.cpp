@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -319,6 +320,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "not a number)"},
         Missing{"too_few", "vn 1 \\\n 0\nf 1//2 2//1 3//1\n", "100",
                 "9: 1 corner has a normal that is missing; made (line 7: a number is missing)"},
+        Missing{"no_length", "vn 0 0 0\nvn 0 -0 0e9\nf 1//2 2//1 3//3\n", "101",
+                "9: 2 corners have a normal that is missing; made (its length is 0)"},
         Missing{"unused", "vn 1 0\nf 1//1 2//1 3//1\n", "000",
                 "7: a number is missing; no corner has this normal"}),
     [](const auto& test) { return std::string(test.param.what); });
@@ -423,6 +426,17 @@ TEST(ReadObj, AnUnnamedMaterialIsOneThatIsNamedNothing) {
     EXPECT_EQ(reading.scene.materials[0].base_color, glm::vec3(0.8f));
     EXPECT_EQ(reading.scene.materials[2].base_color, glm::vec3(1, 0, 0));
     EXPECT_EQ(reading.scene.materials[2].name, "default");
+}
+
+TEST(ReadObj, AMaterialCalledNullIsOneOnlyWhereALibraryHasIt) {
+    const TempFolder folder;
+    folder.write("m.mtl", "newmtl a\nKd 1 0 0\n");
+    const std::string text = "mtllib m.mtl\n" + kSquare + "usemtl (null)\nf 1 2 3\n";
+    const auto none = read(folder, text);
+    EXPECT_EQ(none.warnings, std::vector<std::string>{});
+    EXPECT_EQ(none.scene.materials.at(0).base_color, glm::vec3(0.8f));
+    folder.write("m.mtl", "newmtl (null)\nKd 1 0 0\n");
+    EXPECT_EQ(read(folder, text).scene.materials.at(0).base_color, glm::vec3(1, 0, 0));
 }
 
 TEST(ReadObj, TransformsTheUvsOfAMaterialThatAsksForIt) {
@@ -631,6 +645,20 @@ TEST(ReadObj, PositionsFarAwayAreReadInDoubleRelativeToAnOrigin) {
     }
     // The same in pieces of a line or two.
     EXPECT_EQ(read(TempFolder(), text, 40).scene.positions, reading.scene.positions);
+}
+
+TEST(ReadObj, WhatFloatsCannotTellApartIsReadRelativeToAnOrigin) {
+    for (const double size : {1e-3, 0.01, 0.09, 1.0}) {
+        for (const double place : {1e6, 1e6 + 0.031, -3e8}) {
+            const Reading reading =
+                read(fmt::format("v {0:.17g} 0 0\nv {1:.17g} 0 0\nv {0:.17g} {2:.17g} 0\nf 1 2 3\n",
+                                 place, place + size, size));
+            const auto& p = reading.scene.positions;
+            EXPECT_NEAR(reading.scene.origin.x + p[0].x, place, 1e-7) << size;
+            // As near as doubles of that place are.
+            EXPECT_NEAR(double{p[1].x} - p[0].x, place + size - place, 3e-6 * size) << place;
+        }
+    }
 }
 
 TEST(ReadObj, PositionsNearEnoughHaveNoOrigin) {
