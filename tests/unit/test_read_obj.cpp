@@ -650,13 +650,13 @@ TEST(ReadObj, PositionsFarAwayAreReadInDoubleRelativeToAnOrigin) {
 TEST(ReadObj, WhatFloatsCannotTellApartIsReadRelativeToAnOrigin) {
     for (const double size : {1e-3, 0.01, 0.09, 1.0}) {
         for (const double place : {1e6, 1e6 + 0.031, -3e8}) {
-            const Reading reading =
-                read(fmt::format("v {0:.17g} 0 0\nv {1:.17g} 0 0\nv {0:.17g} {2:.17g} 0\nf 1 2 3\n",
-                                 place, place + size, size));
+            const Reading reading = read(fmt::format(
+                "v {0:.17g} {0:.17g} 0\nv {1:.17g} {0:.17g} 0\nv {0:.17g} {1:.17g} 0\nf 1 2 3\n",
+                place, place + size));
             const auto& p = reading.scene.positions;
             EXPECT_NEAR(reading.scene.origin.x + p[0].x, place, 1e-7) << size;
             // As near as doubles of that place are.
-            EXPECT_NEAR(double{p[1].x} - p[0].x, place + size - place, 3e-6 * size) << place;
+            EXPECT_NEAR(double{p[1].x} - p[0].x, (place + size) - place, 3e-6 * size) << place;
         }
     }
 }
