@@ -1,6 +1,5 @@
 // Floors, back walls, cornices, ceilings and the low walls of the open sides.
 #include <array>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "assets/noise.h"
 #include "assets/scene.h"

@@ -1,10 +1,12 @@
 #include "assets/image.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "assets/noise.h"
 #include "common/encode_png.h"
 #include "common/io.h"
 

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <string>
-
-#include "assets/noise.h"
 
 namespace assets {
 

@@ -1,7 +1,6 @@
 // make-demo-scene OUTPUT_DIR: writes courtyard.obj, courtyard.mtl and textures/*.png.
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 
 #include "assets/demo_scene.h"
 

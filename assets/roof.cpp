@@ -1,6 +1,5 @@
 // The galleries' lean-to roofs of barrel tiles.
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "assets/noise.h"
 #include "assets/scene.h"

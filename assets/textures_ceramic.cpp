@@ -1,4 +1,5 @@
 // Glazed wall tiles, terracotta and the pool.
+#include "assets/noise.h"
 #include "assets/textures.h"
 
 namespace assets {

@@ -1,4 +1,5 @@
 // Damask curtains with gold thread, carpets and planks.
+#include "assets/noise.h"
 #include "assets/textures.h"
 
 namespace assets {

@@ -1,6 +1,7 @@
 // Leaves painted on cards: colour, mask and relief.
 #include <algorithm>
 
+#include "assets/noise.h"
 #include "assets/textures.h"
 
 namespace assets {

@@ -1,4 +1,5 @@
 // Bronze, rusty iron and chain links.
+#include "assets/noise.h"
 #include "assets/textures.h"
 
 namespace assets {

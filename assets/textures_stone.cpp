@@ -1,4 +1,5 @@
 // Marble, flagstones, limestone, carved voussoirs, plaster and brick.
+#include "assets/noise.h"
 #include "assets/textures.h"
 
 namespace assets {

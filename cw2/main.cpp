@@ -5,6 +5,7 @@
 #include "common/io.h"
 #include "cw2/headless.h"
 #include "cw2/interactive.h"
+#include "cw2/options/config.h"
 #include "cw2/options/options.h"
 #include "cw2/vulkan/device.h"
 

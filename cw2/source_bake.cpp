@@ -21,7 +21,6 @@
 #include <system_error>
 #include <utility>
 
-#include "common/file_kind.h"
 #include "common/io.h"
 #include "mesh-format/file.h"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <glm/vector_relational.hpp>
 
 #include "cw2-bake/geometry/box.h"
 

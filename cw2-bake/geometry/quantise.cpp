@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
-#include <limits>
 
 #include "cw2-bake/geometry/vertex_lanes.h"
 #include "mesh-format/tangent_frame.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <iterator>
 #include <numbers>
 

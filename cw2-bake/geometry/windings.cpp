@@ -1,7 +1,6 @@
 #include "cw2-bake/geometry/windings.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace bake {
 namespace {

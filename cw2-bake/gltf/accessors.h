@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/gltf/file.h"
 
 namespace bake {

@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
-#include <tuple>
 
 #include "common/encode_png.h"
 #include "cw2-bake/base/text_lines.h"

@@ -1,7 +1,6 @@
 // A baked scene's textures as glTF wants them.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

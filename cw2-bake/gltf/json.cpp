@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
 
+#include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/gltf/schema.h"
 

@@ -3,10 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <string_view>
-
-#include "cw2-bake/base/diagnostics.h"
 
 namespace bake {
 

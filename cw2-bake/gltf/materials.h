@@ -5,8 +5,8 @@
 #include <set>
 #include <span>
 #include <string>
-#include <vector>
 
+#include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/gltf/file.h"
 #include "cw2-bake/textures/texture.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <meshoptimizer.h>
 
-#include <algorithm>
 #include <functional>
 #include <span>
 #include <string>

@@ -4,6 +4,7 @@
 #include <glm/mat4x4.hpp>
 #include <vector>
 
+#include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/gltf/file.h"
 
 namespace bake {

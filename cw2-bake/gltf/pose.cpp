@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "cw2-bake/gltf/json.h"

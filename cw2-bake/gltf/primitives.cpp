@@ -12,7 +12,6 @@
 #include <optional>
 #include <utility>
 
-#include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/gltf/json.h"
 #include "cw2-bake/gltf/pose.h"
 #include "cw2-bake/textures/srgb.h"

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/gltf/accessors.h"
 #include "cw2-bake/gltf/materials.h"

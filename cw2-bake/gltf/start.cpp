@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 
-#include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/gltf/light.h"
 
 namespace bake {

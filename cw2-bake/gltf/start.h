@@ -1,6 +1,7 @@
 // What a glTF says of where a viewer starts: its camera and its light.
 #pragma once
 
+#include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/gltf/file.h"
 #include "cw2-bake/gltf/nodes.h"

@@ -9,7 +9,6 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "cw2-bake/base/raw_vector.h"

@@ -1,7 +1,6 @@
 // Finished textures to blocks that the GPU samples as they are.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
 #include "cw2-bake/textures/texture.h"

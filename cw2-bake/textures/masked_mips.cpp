@@ -1,7 +1,6 @@
 // The mip chains of alpha masks and of the base colours under them.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "cw2-bake/textures/mask_coverage.h"
 #include "cw2-bake/textures/mip_chain.h"

@@ -11,6 +11,7 @@
 #include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/textures/block_compression.h"
 #include "cw2-bake/textures/mip_chain.h"
+#include "cw2-bake/textures/read_image.h"
 #include "cw2-bake/textures/relief.h"
 #include "cw2-bake/textures/roughness_mips.h"
 #include "cw2-bake/textures/texels.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cw2-bake/base/source_scene.h"
-#include "cw2-bake/textures/read_image.h"
+#include "cw2-bake/textures/image.h"
 #include "cw2-bake/textures/roughness_mips.h"
 #include "cw2-bake/textures/texture.h"
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "cw2/options/config.h"
+
 namespace cw2 {
 
 Options completed(Options options, const SceneStart& start, const Bounds& bounds) {

@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "cw2/options/config.h"
-#include "cw2/render/frame_settings.h"
 #include "cw2/render/frames.h"
 #include "cw2/render/view.h"
 

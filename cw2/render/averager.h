@@ -3,7 +3,6 @@
 
 #include <vulkan/vulkan.h>
 
-#include <array>
 #include <cstdint>
 
 #include "cw2/render/renderer.h"

@@ -6,8 +6,6 @@
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <string>
 #include <vector>

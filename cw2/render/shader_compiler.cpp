@@ -6,7 +6,6 @@
 #include <glslang/SPIRV/GlslangToSpv.h>
 
 #include <forward_list>
-#include <memory>
 #include <string>
 #include <string_view>
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "cw2/vulkan/device.h"
 #include "cw2/vulkan/handle.h"

@@ -4,9 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "cw2/options/controls.h"

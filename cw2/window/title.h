@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "cw2/render/renderer.h"
+#include "cw2/render/frame_settings.h"
 #include "cw2/window/window.h"
 
 namespace cw2 {

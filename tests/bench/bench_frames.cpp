@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <glm/geometric.hpp>
 #include <map>
 #include <stdexcept>
 #include <tuple>

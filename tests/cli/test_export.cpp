@@ -1,10 +1,10 @@
 // Bakes as glTF, and back.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <set>
 
 #include "common/io.h"
 #include "mesh-format/file.h"

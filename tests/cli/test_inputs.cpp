@@ -1,4 +1,6 @@
 // What a bake reads: --depfile, and outputs that are refused because they are inputs.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cctype>
 

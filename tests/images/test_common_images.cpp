@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <csetjmp>
 #include <cstdio>
 #include <fstream>
 #include <memory>

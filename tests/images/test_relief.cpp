@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "cw2-bake/textures/textures.h"
 #include "image_files.h"

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <glm/geometric.hpp>
 
 #include "tests/render/gltf_scenes.h"
 #include "tests/render/known_textures.h"

@@ -1,7 +1,6 @@
 // OBJ, MTL and PNG files of small test scenes.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <functional>

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "cw2/headless.h"
 #include "cw2/options/frame_of.h"
 #include "cw2/options/options.h"
 #include "cw2/render/picker.h"

@@ -1,7 +1,6 @@
 // OBJ and MTL texts for tests: written to a folder of their own, read, and made comparable.
 #pragma once
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cmath>

@@ -1,5 +1,7 @@
 // The file format: what is written comes back, and nothing else is taken for a file.
 
+#include <gtest/gtest.h>
+
 #include "small_scene.h"
 
 namespace {

@@ -1,3 +1,5 @@
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +21,7 @@ std::multiset<std::array<float, 3>> triangles_by_x(const SourceScene& scene) {
     for (std::size_t t = 0; t < triangle_count(scene); ++t) {
         std::array<float, 3> x{};
         for (std::size_t k = 0; k < 3; ++k) x[k] = position(scene, 3 * t + k).x;
-        std::ranges::rotate(x, std::ranges::min_element(x));
+        std::rotate(x.begin(), std::ranges::min_element(x), x.end());
         result.insert(x);
     }
     return result;

@@ -1,4 +1,5 @@
-#include <fstream>
+#include <gtest/gtest.h>
+
 #include <numbers>
 
 #include "cw2-bake/gltf/materials.h"

@@ -1,4 +1,6 @@
 // Files whose checksums are right and whose contents are hostile.
+#include <gtest/gtest.h>
+
 #include <limits>
 
 #include "small_scene.h"

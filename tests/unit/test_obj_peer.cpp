@@ -1,11 +1,11 @@
 // Our OBJ reader against tinyobjloader, on what both define.
 #define TINYOBJLOADER_IMPLEMENTATION
+#include <gtest/gtest.h>
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include "obj_text.h"
 

@@ -1,5 +1,6 @@
 // Lines that are read at a glance mean what they mean when read word by word.
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <map>
 #include <memory>
 #include <random>
 
@@ -232,7 +231,6 @@ TEST(Quantise, FloatFormsAreExact) {
     std::mt19937 random(5);
     const Scene scene(random_points(random, 300, {9.0f, 1.0f, 4.0f}, 2.0f),
                       random_uvs(random, 300, -7.0f, 3.0f));
-    const bake::UvBudget budget;
     const auto packed = scene.pack({}, {FrameForm::f32, PositionForm::f32});
     for (std::size_t i = 0; i < 300; ++i) {
         const Decoded decoded = decode(packed, packed.meshes[0], i);

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
-#include <string>
 
 #include "cw2/render/frames.h"
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <span>
 #include <string>
 
 #include "common/io.h"

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/gtc/type_ptr.hpp>
 
 #include "cw2/options/frame_of.h"
 #include "cw2/window/viewer_state.h"
