@@ -7,10 +7,12 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <glm/common.hpp>
 #include <map>
 #include <stdexcept>
 #include <tuple>
 
+#include "common/io.h"
 #include "cw2-bake/geometry/normals.h"
 #include "cw2-bake/geometry/tangents.h"
 #include "cw2-bake/geometry/weld.h"
