@@ -84,7 +84,9 @@ void expect_bumps(const Made& made, double tolerance) {
 
 /// Pseudo-random, in [-1, 1].
 double noise(int x, int y, int channel) {
-    std::uint32_t h = static_cast<std::uint32_t>(x * 73856093 ^ y * 19349663 ^ channel * 83492791);
+    const auto wrapped = [](int value) { return static_cast<std::uint32_t>(value); };
+    std::uint32_t h =
+        wrapped(x) * 73856093u ^ wrapped(y) * 19349663u ^ wrapped(channel) * 83492791u;
     h ^= h >> 13;
     h *= 0x5bd1e995;
     h ^= h >> 15;

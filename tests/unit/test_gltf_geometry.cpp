@@ -40,7 +40,7 @@ GltfWriter hexagon(int mode, const std::vector<std::uint16_t>& indices) {
     nlohmann::json primitive{
         {"attributes", {{"POSITION", gltf.accessor(positions, kFloat, "VEC3")}}}, {"mode", mode}};
     if (!indices.empty()) primitive["indices"] = gltf.accessor(indices, kUshort, "SCALAR");
-    gltf.root["meshes"][0]["primitives"] = {primitive};
+    gltf.root["meshes"][0]["primitives"] = nlohmann::json::array({primitive});
     gltf.root["nodes"][0]["mesh"] = 0;
     return gltf;
 }

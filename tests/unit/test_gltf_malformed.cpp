@@ -190,7 +190,7 @@ TEST_F(GltfMalformed, IsRefusedWithItsPlace) {
 TEST_F(GltfMalformed, BuffersThatCannotBeHadAreErrors) {
     GltfWriter gltf = square_gltf();
     const auto message = [&](const json& buffer) {
-        gltf.root["buffers"] = {buffer};
+        gltf.root["buffers"] = json::array({buffer});
         gltf.write_gltf(folder_ / "scene.gltf");
         return error_of_file("scene.gltf");
     };

@@ -20,7 +20,7 @@ class GltfMaterials : public GltfReading {
     /// The square with this material; its textures 0, 1 and 2 are of the images a, b and c.
     static GltfWriter with_material(const json& material) {
         GltfWriter gltf = square_gltf();
-        gltf.root["materials"] = {material};
+        gltf.root["materials"] = json::array({material});
         gltf.root["meshes"][0]["primitives"][0]["material"] = 0;
         for (const char* name : {"a", "b", "c"}) {
             const int image = gltf.add("images", {{"uri", std::string(name) + ".png"}});
@@ -240,7 +240,7 @@ TEST_F(GltfMaterials, SamplersClampOrRepeat) {
     source["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
     const auto clamps = [&](const json& sampler) {
         GltfWriter gltf = with_material(source);
-        gltf.root["samplers"] = {sampler};
+        gltf.root["samplers"] = json::array({sampler});
         gltf.root["textures"][0]["sampler"] = 0;
         return read(gltf).materials.at(0).maps[MapUse::base_color]->clamp;
     };
