@@ -41,13 +41,13 @@ struct Range {
     T high;
     bool has(T value) const { return value >= low && value <= high; }
 };
-inline constexpr Range kDividerRange{0.0f, 1.0f};
-inline constexpr Range kExposureRange{-64.0f, 64.0f};
-inline constexpr Range kFovRange{1.0f, 179.0f};
-inline constexpr Range kOverrideRange{0.0f, 1.0f};  ///< of roughness and metalness
-inline constexpr Range kNormalStrengthRange{0.0f, 10.0f};
-inline constexpr Range kAnisotropyRange{1u, 16u};
-inline constexpr Range kBenchRange{0u, 1'000'000u};
+inline constexpr Range<float> kDividerRange{0.0f, 1.0f};
+inline constexpr Range<float> kExposureRange{-64.0f, 64.0f};
+inline constexpr Range<float> kFovRange{1.0f, 179.0f};
+inline constexpr Range<float> kOverrideRange{0.0f, 1.0f};  ///< of roughness and metalness
+inline constexpr Range<float> kNormalStrengthRange{0.0f, 10.0f};
+inline constexpr Range<std::uint32_t> kAnisotropyRange{1u, 16u};
+inline constexpr Range<std::uint32_t> kBenchRange{0u, 1'000'000u};
 
 inline constexpr float kVerticalFov = 60.0f;  ///< degrees, where nobody asks for another
 
