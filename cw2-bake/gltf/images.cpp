@@ -146,7 +146,7 @@ std::string name_of(const Document& document, const Key& key) {
                                    : std::string(document.text(document.textures[index].name));
     };
     const std::string first = name(key.first);
-    const std::string second = name(key.second);
+    std::string second = name(key.second);  // not const: it is moved from
     if (first.empty() || first == second) return second;
     return second.empty() || key.use == Use::color ? first : first + '+' + second;
 }
