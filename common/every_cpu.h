@@ -2,7 +2,14 @@
 #pragma once
 
 // AVX2 brings no fused multiplications, so both compute the same bits.
-#if defined(__x86_64__)
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+// The loader asks for the choice before the sanitizer is ready.
+#define CW2_EVERY_CPU
+#endif
+#endif
+#if defined(CW2_EVERY_CPU)
+#elif defined(__x86_64__)
 #define CW2_EVERY_CPU __attribute__((target_clones("default", "avx2")))
 #else
 #define CW2_EVERY_CPU
