@@ -319,7 +319,7 @@ std::vector<Setting> all_settings() {
         flag("no-normal-map", "shade with the vertex normals", &O::normal_map, false),
         flag("no-alpha-mask", "draw what alpha masks cut away", &O::alpha_mask, false),
         flag("two-sided",
-             "turn the normals of back faces to the camera (an OBJ's stay as they are)",
+             "turn the normals of back faces to the camera (without it an OBJ's stay as they are)",
              &O::two_sided),
         value<std::optional<std::uint32_t>>(
             "samples", "1|4|16|64|256", "frames that a picture is the average of [4]", &O::samples,

@@ -15,6 +15,13 @@ namespace fs = std::filesystem;
 
 class Inputs : public SceneFolder {
  protected:
+    /// What GNU make would bake anew because it is older than its inputs; empty for nothing.
+    std::string stale() {
+        write("Makefile", "include deps.mk\n%.cw2mesh:\n\t@echo stale\n");
+        const Outcome outcome = run({GNU_MAKE, "-s"}, {{}, folder_.path()});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return outcome.out.starts_with("stale") ? "stale" : "";
+    }
     /// The same of ninja, for which a generator's command need not be in its log.
     std::string ninja_rebakes() {
         write("build.ninja",
@@ -23,13 +30,6 @@ class Inputs : public SceneFolder {
         const Outcome outcome = run({NINJA, "-n"}, {{}, folder_.path()});
         EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
         return outcome.out.find("no work to do") == std::string::npos ? "stale" : "";
-    }
-    /// What GNU make would bake anew because it is older than its inputs; empty for nothing.
-    std::string stale() {
-        write("Makefile", "include deps.mk\n%.cw2mesh:\n\t@echo stale\n");
-        const Outcome outcome = run({GNU_MAKE, "-s"}, {{}, folder_.path()});
-        EXPECT_EQ(outcome.status, 0) << outcome.err;
-        return outcome.out.starts_with("stale") ? "stale" : "";
     }
     void make_older(const std::string& name) const {
         fs::last_write_time(here(name), fs::last_write_time(here(name)) - std::chrono::hours(1));

@@ -41,7 +41,6 @@ TEST_F(Limits, CoordinatesNearTheLargestFloatAreBlamedOnTheInput) {
     }
 }
 
-#if !defined(__SANITIZE_ADDRESS__)
 TEST_F(Limits, ALackOfMemorySaysWhatWasRead) {
     std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     for (int i = 0; i < 3'000'000; ++i) text += "f 1 2 3\n";
@@ -71,6 +70,25 @@ TEST_F(Limits, ALackOfMemoryForATextureNamesItsImage) {
     EXPECT_EQ(outcome.err,
               "cw2-bake: m.mtl:2: big.png: there is not enough memory to make its texture\n");
 }
-#endif
+TEST_F(Limits, AWriteThatFailsLeavesWhatWasThere) {
+    bake_well({"scene.obj", "-o", "out.cw2mesh", "--textures", "none", "--quiet"});
+    const std::string before = read("out.cw2mesh");
+    std::string text;
+    for (int i = 0; i < 3000; ++i)
+        text += "v " + std::to_string(i) + " 0 0\nv 0 1 0\nv 0 0 1\nf -1 -2 -3\n";
+    write("many.obj", text);
+    const auto count = [this] {
+        return std::distance(std::filesystem::directory_iterator(folder_.path()), {});
+    };
+    const auto files = count();
+    const Outcome outcome = run({"/bin/bash", "-c", "ulimit -f 1; trap '' XFSZ; exec \"$0\" \"$@\"",
+                                 BAKE_PROGRAM, "many.obj", "-o", "out.cw2mesh", "--quiet"},
+                                {{}, folder_.path()});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_TRUE(outcome.err.starts_with("cw2-bake: out.cw2mesh: cannot be written: "))
+        << outcome.err;
+    EXPECT_EQ(read("out.cw2mesh"), before);
+    EXPECT_EQ(count(), files);
+}
 
 }  // namespace

@@ -43,11 +43,6 @@ class SourceBake : public SceneFolder {
         }
         return found;
     }
-    /// So that a change is later than the bake, whatever the clock's steps.
-    void age(const std::string& name) const {
-        fs::last_write_time(here(name), fs::file_time_type::clock::now() - std::chrono::hours(1));
-    }
-
     std::string cache_ = here("cache").string();
 };
 
@@ -164,14 +159,13 @@ TEST_F(SourceBake, RunsAtTheSameTimeShareOneEntry) {
 TEST_F(SourceBake, TheOldestEntriesGoAboveTwoGigabytes) {
     draw_well("scene.obj", "a.png");
     const fs::path folder = fs::path(cache_) / "cw2";
-    for (const char* name : {"old", "older"}) {
+    for (const auto& [name, hours] : {std::pair<std::string, int>{"old", 1}, {"older", 2}}) {
         for (const char* extension : {".cw2mesh", ".lock", ".notes"})
-            std::ofstream(folder / (std::string(name) + extension)) << "x";
-        fs::resize_file(folder / (std::string(name) + ".cw2mesh"), std::uintmax_t{1200} << 20);
+            std::ofstream(folder / (name + extension)) << "x";
+        const fs::path baked = folder / (name + ".cw2mesh");
+        fs::resize_file(baked, std::uintmax_t{1200} << 20);
+        fs::last_write_time(baked, fs::file_time_type::clock::now() - std::chrono::hours(hours));
     }
-    age("cache/cw2/old.cw2mesh");
-    fs::last_write_time(folder / "older.cw2mesh",
-                        fs::file_time_type::clock::now() - std::chrono::hours(2));
     bake_well({"scene.obj", "-o", "scene.glb"});
     draw_well("scene.glb", "a.png");
     EXPECT_TRUE(fs::exists(folder / "old.cw2mesh"));

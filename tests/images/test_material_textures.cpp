@@ -111,8 +111,12 @@ TEST(AlphaMasks, WhereNothingIsShownTheColourStaysAsItIs) {
     SourceMaterial material;
     material.maps[MapUse::base_color] = map_of(folder / "color.png");
     material.maps[MapUse::alpha_mask] = map_of(folder / "mask.png");
-    const TextureSet set = bake::bake_textures({{material}}, bake::TextureMode::lossless, {},
-                                               [](const std::string&) {}, {});
+    std::vector<std::string> warnings;
+    const TextureSet set =
+        bake::bake_textures({{material}}, bake::TextureMode::lossless, {},
+                            [&](const std::string& warning) { warnings.push_back(warning); }, {});
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("is a mask that hides everything"), std::string::npos);
     EXPECT_EQ(first_texels(set.textures[set.materials[0].textures[MapUse::base_color]], 2),
               (std::vector{0, 51}));
     EXPECT_EQ(first_texels(set.textures[set.materials[0].textures[MapUse::alpha_mask]], 2),

@@ -19,6 +19,10 @@ void run_silently(std::vector<std::string> command, const std::vector<std::strin
 
 }  // namespace
 
+void make_test_scenes(const std::filesystem::path& folder) {
+    run_silently({MAKE_TEST_SCENES_PROGRAM, folder}, {});
+}
+
 std::filesystem::path bake_scene(const std::filesystem::path& obj,
                                  const std::vector<std::string>& options) {
     std::filesystem::path baked = obj;

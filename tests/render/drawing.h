@@ -7,6 +7,9 @@
 
 #include "tests/support/image.h"
 
+/// Writes the scenes of make_test_scenes into `folder`. Throws as those below do.
+void make_test_scenes(const std::filesystem::path& folder);
+
 /// Bakes `obj` beside itself, textures lossless unless the options say otherwise, and returns the
 /// path of the baked file. Any message is an error.
 std::filesystem::path bake_scene(const std::filesystem::path& obj,

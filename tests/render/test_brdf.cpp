@@ -16,17 +16,13 @@
 #include "tests/render/brdf_truth.h"
 #include "tests/render/drawing.h"
 #include "tests/render/ray_cast.h"
+#include "tests/render/srgb_truth.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
 
 using glm::dvec2;
 using glm::dvec3;
-
-/// IEC 61966-2-1.
-double linear_of_srgb(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
 
 /// Whole numbers from 0 to 255, dark ones among them.
 dvec3 color_bytes(const dvec3& position) {

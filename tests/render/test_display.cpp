@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "tests/render/drawing.h"
-#include "tests/support/process.h"
+#include "tests/render/srgb_truth.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
@@ -21,7 +21,6 @@ namespace {
 using glm::dvec3;
 using Options = std::vector<std::string>;
 
-constexpr double kByte = 1.0 / 255.0 + 1e-6;  // one step of an 8-bit sample
 /// Rows at the bottom that may hold the legend.
 constexpr int kLegendRows = 24;
 
@@ -29,7 +28,7 @@ class Display : public testing::Test {
  protected:
     static void SetUpTestSuite() {
         folder_ = std::make_unique<TemporaryFolder>();
-        ASSERT_EQ(run({MAKE_TEST_SCENES_PROGRAM, folder_->path()}).status, 0);
+        make_test_scenes(folder_->path());
         scene_ = bake_scene(*folder_ / "stage.obj");
     }
     static void TearDownTestSuite() { folder_.reset(); }
@@ -57,11 +56,6 @@ class Display : public testing::Test {
 
 std::unique_ptr<TemporaryFolder> Display::folder_;
 std::filesystem::path Display::scene_;
-
-double srgb_of(double linear) {
-    const double x = std::clamp(linear, 0.0, 1.0);
-    return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
-}
 
 /// Linear sRGB of an Oklab colour, from its definition.
 dvec3 rgb_of_oklab(double lightness, double a, double b) {
@@ -95,7 +89,9 @@ void expect_shows(const Picture& png, const Picture& exr, int rows, Color color)
             if (value[3] == 0.0f) continue;
             ++seen;
             const dvec3 truth = color(value);
-            for (int c = 0; c < 3; ++c) ASSERT_NEAR(png.at(x, y)[c], srgb_of(truth[c]), kByte);
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(png.at(x, y)[c], srgb_of_linear(std::clamp(truth[c], 0.0, 1.0)),
+                            kByteStep);
         }
     }
     EXPECT_GT(seen, 5000);

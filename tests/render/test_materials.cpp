@@ -9,6 +9,7 @@
 
 #include "tests/render/drawing.h"
 #include "tests/render/known_textures.h"
+#include "tests/render/srgb_truth.h"
 #include "tests/support/gltf_writer.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
@@ -16,15 +17,6 @@
 namespace {
 
 using Options = std::vector<std::string>;
-
-/// IEC 61966-2-1.
-double linear_of_srgb(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-double srgb_of_linear(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
 
 /// What a file holds of a vertex colour's channel.
 double stored(double linear) {
@@ -75,8 +67,7 @@ bool at_an_edge(double u, double v) {
 class Materials : public testing::Test {
  protected:
     std::filesystem::path screen() {
-        const Outcome made = run({MAKE_TEST_SCENES_PROGRAM, folder_.path()});
-        EXPECT_EQ(made.status, 0) << made.err;
+        make_test_scenes(folder_.path());
         return bake_scene(folder_ / "screen.obj");
     }
 

@@ -5,14 +5,12 @@
 #include <cmath>
 #include <fstream>
 #include <glm/geometric.hpp>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "cw2/options/frame_of.h"
-#include "cw2/options/options.h"
 #include "cw2/render/picker.h"
 #include "tests/render/drawing.h"
+#include "tests/render/loaded_scene.h"
 #include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
@@ -23,37 +21,18 @@ using glm::vec3;
 
 constexpr int kWidth = 160, kHeight = 90;
 
-/// Picks with the settings that words of the command line say; validation messages are failures.
-class Reader {
+/// Picks with the settings that words of the command line say.
+class Reader : public LoadedScene {
  public:
-    Reader(const std::filesystem::path& path, const Words& words) {
-        std::vector<const char*> arguments{"cw2", path.c_str(), "--output", "ignored.exr"};
-        for (const std::string& word : words) arguments.push_back(word.c_str());
-        const auto options =
-            cw2::parse_options(static_cast<int>(arguments.size()), arguments.data());
-        scene_ = std::make_unique<cw2::Scene>(
-            cw2::load_scene(device_, layouts_, path, cw2::texture_settings(*options, device_)));
-        settings_ = cw2::frame_settings(*options, scene_->bounds(), float{kWidth} / kHeight);
-        settings_.light.position =
-            cw2::orbit(settings_.light.position, scene_->bounds().center, options->time);
-    }
-    ~Reader() { EXPECT_EQ(instance_.validation_messages(), 0); }
-    Reader(const Reader&) = delete;
-    Reader& operator=(const Reader&) = delete;
+    Reader(const std::filesystem::path& path, const Words& words)
+        : LoadedScene(path, words, {kWidth, kHeight}) {}
 
     std::optional<cw2::Pick> pick(int x, int y) {
-        return picker_.pick(*scene_, settings_, {kWidth, kHeight}, glm::uvec2(x, y));
+        return picker_.pick(scene(), settings(), {kWidth, kHeight}, glm::uvec2(x, y));
     }
-    const cw2::Scene& scene() const { return *scene_; }
-    const cw2::FrameSettings& settings() const { return settings_; }
 
  private:
-    cw2::Instance instance_{true, {}};
-    cw2::Device device_{instance_, std::nullopt};
-    cw2::Layouts layouts_{device_};
-    std::unique_ptr<cw2::Scene> scene_;
-    cw2::FrameSettings settings_;
-    cw2::Picker picker_{device_, layouts_, cw2::built_in_shaders()};
+    cw2::Picker picker_{device(), layouts(), cw2::built_in_shaders()};
 };
 
 Words with_size(Words words) {
@@ -64,8 +43,7 @@ Words with_size(Words words) {
 class Picker : public testing::Test {
  protected:
     std::filesystem::path stage() {
-        const Outcome made = run({MAKE_TEST_SCENES_PROGRAM, folder_.path()});
-        EXPECT_EQ(made.status, 0) << made.err;
+        make_test_scenes(folder_.path());
         return bake_scene(folder_ / "stage.obj");
     }
 

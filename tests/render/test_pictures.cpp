@@ -16,7 +16,7 @@
 
 #include "tests/render/drawing.h"
 #include "tests/render/known_textures.h"
-#include "tests/support/process.h"
+#include "tests/render/srgb_truth.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
@@ -25,18 +25,11 @@ using glm::dvec2;
 using glm::dvec3;
 using Options = std::vector<std::string>;
 
-double srgb_of(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
-
-constexpr double kByte = 1.0 / 255.0 + 1e-6;  // one step of an 8-bit sample
-
 class Pictures : public testing::Test {
  protected:
     static void SetUpTestSuite() {
         folder_ = std::make_unique<TemporaryFolder>();
-        const Outcome made = run({MAKE_TEST_SCENES_PROGRAM, folder_->path()});
-        ASSERT_EQ(made.status, 0) << made.err;
+        make_test_scenes(folder_->path());
     }
     static void TearDownTestSuite() {
         scenes_.clear();
@@ -105,7 +98,7 @@ TEST_F(Pictures, TexturesStandUprightAndKeepTheirBytes) {
         // Filtering mixes the quarters along their edges.
         if (std::abs(point.x) < 0.05 || std::abs(point.y) < 0.05) return;
         const int* const color = kQuadrants[(point.y > 0.0 ? 2 : 0) + (point.x > 0.0 ? 1 : 0)];
-        for (int c = 0; c < 3; ++c) ASSERT_NEAR(sample[c], color[c] / 255.0, kByte);
+        for (int c = 0; c < 3; ++c) ASSERT_NEAR(sample[c], color[c] / 255.0, kByteStep);
     });
 }
 
@@ -116,7 +109,8 @@ TEST_F(Pictures, PngHoldsSrgbAndExrLinearValues) {
     };
     const Picture png = draw_frontal("greys", ".png", "base-color");
     for_each_point(png, 1.99, 0.9, [&](dvec2 point, const float* sample) {
-        ASSERT_TRUE(at_an_edge(point) || std::abs(sample[1] - srgb_of(value_at(point))) < kByte);
+        ASSERT_TRUE(at_an_edge(point) ||
+                    std::abs(sample[1] - srgb_of_linear(value_at(point))) < kByteStep);
     });
     const Picture exr = draw_frontal("greys", ".exr", "base-color");
     for_each_point(exr, 1.99, 0.9, [&](dvec2 point, const float* sample) {
@@ -134,7 +128,7 @@ TEST_F(Pictures, PngIsTheExrEncoded) {
         for (int x = 0; x < png.width; ++x) {
             for (int c = 0; c < 3; ++c) {
                 const double linear = std::clamp(double{exr.at(x, y)[c]}, 0.0, 1.0);
-                ASSERT_NEAR(png.at(x, y)[c], srgb_of(linear), kByte);
+                ASSERT_NEAR(png.at(x, y)[c], srgb_of_linear(linear), kByteStep);
             }
         }
     }
@@ -241,7 +235,7 @@ TEST_F(Pictures, MirroredHalvesAreLitAsMirrorImages) {
                     std::copy_n(picture.at(picture.width - 1 - x, y), 3, mirrored.at(x, y));
                 }
             }
-            EXPECT_LE(largest_difference(picture, mirrored), 2.0 * kByte) << scene;
+            EXPECT_LE(largest_difference(picture, mirrored), 2.0 * kByteStep) << scene;
         }
     }
 }
@@ -374,11 +368,12 @@ TEST_F(Pictures, WhitePaperThatFacesTheLightIsWhite) {
     // 0.96 of the light is left for the diffuse term, 1 / 100 of it shines: D = 1 / pi, F = 0.04.
     const double lit = 0.96 / M_PI + 0.01 / M_PI;
     EXPECT_NEAR(middle(".exr", {"--ambient", "0,0,0"}), lit, 1e-5);
-    EXPECT_NEAR(middle(".png", {"--ambient", "0,0,0", "--exposure", "0"}), srgb_of(lit), kByte);
+    EXPECT_NEAR(middle(".png", {"--ambient", "0,0,0", "--exposure", "0"}), srgb_of_linear(lit),
+                kByteStep);
     EXPECT_NEAR(middle(".png", {"--ambient", "0,0,0", "--light-color", "0.5,0.5,0.5"}),
-                srgb_of(0.5 * M_PI * lit), kByte);
+                srgb_of_linear(0.5 * M_PI * lit), kByteStep);
     // No other view is brightened.
-    EXPECT_NEAR(middle(".png", {"--view", "diffuse"}), srgb_of(0.96 / M_PI), kByte);
+    EXPECT_NEAR(middle(".png", {"--view", "diffuse"}), srgb_of_linear(0.96 / M_PI), kByteStep);
 }
 
 TEST_F(Pictures, TheDefaultCameraSeesTheWholeSceneFromTheSide) {

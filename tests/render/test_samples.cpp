@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "cw2/options/frame_of.h"
 #include "cw2/render/averager.h"
 #include "tests/render/drawing.h"
-#include "tests/support/process.h"
+#include "tests/render/loaded_scene.h"
+#include "tests/render/srgb_truth.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
@@ -24,17 +24,11 @@ namespace {
 using Words = std::vector<std::string>;
 
 constexpr std::uint32_t kWidth = 160, kHeight = 90;
-constexpr double kByte = 1.0 / 255.0 + 1e-6;  // one step of an 8-bit sample
-
-double srgb_of(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
-
 class Samples : public testing::Test {
  protected:
     static void SetUpTestSuite() {
         folder_ = std::make_unique<TemporaryFolder>();
-        ASSERT_EQ(run({MAKE_TEST_SCENES_PROGRAM, folder_->path()}).status, 0);
+        make_test_scenes(folder_->path());
         scene_ = bake_scene(*folder_ / "stage.obj");
     }
     static void TearDownTestSuite() { folder_.reset(); }
@@ -83,20 +77,10 @@ TEST(PixelSamples, LieInTheirPixelNoTwoInOneRowOrColumn) {
 }
 
 /// Draws single frames and means of the scene on a device of its own.
-class Frames {
+class Frames : public LoadedScene {
  public:
-    Frames(const std::filesystem::path& path, const Words& words) {
-        std::vector<const char*> arguments{"cw2", path.c_str(), "--output", "ignored.exr"};
-        for (const std::string& word : words) arguments.push_back(word.c_str());
-        const auto options =
-            cw2::parse_options(static_cast<int>(arguments.size()), arguments.data());
-        scene_ = std::make_unique<cw2::Scene>(
-            cw2::load_scene(device_, layouts_, path, cw2::texture_settings(*options, device_)));
-        settings_ = cw2::frame_settings(*options, scene_->bounds(), float{kWidth} / kHeight);
-    }
-    ~Frames() { EXPECT_EQ(instance_.validation_messages(), 0); }
-    Frames(const Frames&) = delete;
-    Frames& operator=(const Frames&) = delete;
+    Frames(const std::filesystem::path& path, const Words& words)
+        : LoadedScene(path, words, kExtent) {}
 
     /// One sample a pixel, without any averaging.
     std::vector<float> frame(const cw2::PixelSample& sample) {
@@ -104,24 +88,24 @@ class Frames {
         constexpr cw2::ImageUse kCopied{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                         VK_PIPELINE_STAGE_2_COPY_BIT,
                                         VK_ACCESS_2_TRANSFER_READ_BIT};
-        renderer_.record(commands_, 0, *scene_,
+        renderer_.record(commands_, 0, scene(),
                          {.image = image_.handle.get(),
                           .view = image_.view.get(),
                           .extent = kExtent,
                           .available_at = kCopied.stages,
                           .after = kCopied,
                           .sample = sample},
-                         settings_);
+                         settings());
         return read(image_.handle.get());
     }
     std::vector<float> mean(std::uint32_t count, bool clamps) {
         for (std::uint32_t i = 0; i + 1 < count; ++i) {
             cw2::begin_commands(commands_);
-            averager_.add(commands_, 0, *scene_, settings_, kExtent, i, count, clamps);
-            cw2::submit_and_wait(device_, commands_);
+            averager_.add(commands_, 0, scene(), settings(), kExtent, i, count, clamps);
+            cw2::submit_and_wait(device(), commands_);
         }
         cw2::begin_commands(commands_);
-        averager_.add(commands_, 0, *scene_, settings_, kExtent, count - 1, count, clamps);
+        averager_.add(commands_, 0, scene(), settings(), kExtent, count - 1, count, clamps);
         return read(averager_.mean(commands_));
     }
 
@@ -131,29 +115,24 @@ class Frames {
 
     std::vector<float> read(VkImage image) {
         cw2::read_back(commands_, image, kExtent, pixels_);
-        cw2::submit_and_wait(device_, commands_);
+        cw2::submit_and_wait(device(), commands_);
         std::vector<float> values(pixels_.mapped.size() / sizeof(float));
         std::memcpy(values.data(), pixels_.mapped.data(), pixels_.mapped.size());
         return values;
     }
 
-    cw2::Instance instance_{true, {}};
-    cw2::Device device_{instance_, std::nullopt};
-    cw2::Layouts layouts_{device_};
-    std::unique_ptr<cw2::Scene> scene_;
-    cw2::FrameSettings settings_;
     cw2::Renderer renderer_{
-        device_, layouts_, cw2::built_in_shaders(), kFormat, VK_SAMPLE_COUNT_1_BIT, 1};
-    cw2::Averager averager_{device_, layouts_, cw2::built_in_shaders(), 1};
-    cw2::Image image_{cw2::make_image(
-        device_, {.format = kFormat,
-                  .extent = kExtent,
-                  .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT})};
-    cw2::Buffer pixels_{cw2::make_buffer(device_, VkDeviceSize{kWidth} * kHeight * 16,
+        device(), layouts(), cw2::built_in_shaders(), kFormat, VK_SAMPLE_COUNT_1_BIT, 1};
+    cw2::Averager averager_{device(), layouts(), cw2::built_in_shaders(), 1};
+    cw2::Image image_{cw2::make_image(device(), {.format = kFormat,
+                                                 .extent = kExtent,
+                                                 .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                                          VK_IMAGE_USAGE_TRANSFER_SRC_BIT})};
+    cw2::Buffer pixels_{cw2::make_buffer(device(), VkDeviceSize{kWidth} * kHeight * 16,
                                          VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                          cw2::MemoryUse::readback)};
-    cw2::CommandPool pool_{cw2::make_command_pool(device_)};
-    VkCommandBuffer commands_{cw2::allocate_commands(device_, pool_.get())};
+    cw2::CommandPool pool_{cw2::make_command_pool(device())};
+    VkCommandBuffer commands_{cw2::allocate_commands(device(), pool_.get())};
 };
 
 TEST_F(Samples, APictureIsTheMeanOfItsFrames) {
@@ -242,11 +221,11 @@ TEST_F(Samples, NoBackgroundLeavesWhatIsInFrontOfIt) {
             const double alpha = value[3];
             edges += alpha > 0.0 && alpha < 1.0;
             ASSERT_EQ(before.at(x, y)[3], value[3]);
-            ASSERT_NEAR(png.at(x, y)[3], alpha, 0.5 * kByte);
+            ASSERT_NEAR(png.at(x, y)[3], alpha, 0.5 * kByteStep);
             for (int c = 0; c < 3; ++c) {
                 ASSERT_NEAR(value[c] + (1.0 - alpha) * kBackground[c], before.at(x, y)[c], 1e-5);
                 const double straight = alpha > 0.0 ? value[c] / alpha : 0.0;
-                ASSERT_NEAR(png.at(x, y)[c], srgb_of(std::min(straight, 1.0)), kByte);
+                ASSERT_NEAR(png.at(x, y)[c], srgb_of_linear(std::min(straight, 1.0)), kByteStep);
             }
         }
     }

@@ -104,3 +104,8 @@ inline GltfWriter square_gltf() {
     gltf.root["scene"] = 0;
     return gltf;
 }
+
+/// The first primitive of the first mesh.
+inline nlohmann::json& primitive(GltfWriter& gltf) {
+    return gltf.root["meshes"][0]["primitives"][0];
+}

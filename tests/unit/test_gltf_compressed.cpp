@@ -15,10 +15,6 @@ namespace {
 using bake::SourceScene;
 using nlohmann::json;
 
-json& primitive(GltfWriter& gltf) {
-    return gltf.root["meshes"][0]["primitives"][0];
-}
-
 using Bytes = std::vector<unsigned char>;
 
 Bytes encode_vertices(const auto& values, std::size_t stride) {

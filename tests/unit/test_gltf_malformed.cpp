@@ -25,10 +25,6 @@ struct Damage {
     std::function<void(GltfWriter&)> apply;
 };
 
-json& primitive(GltfWriter& gltf) {
-    return gltf.root["meshes"][0]["primitives"][0];
-}
-
 const Damage kDamages[] = {
     {"/: has no asset", [](GltfWriter& g) { g.root.erase("asset"); }},
     {"/asset/version: is glTF 1.0; only 2.0 is read",

@@ -10,10 +10,6 @@ using nlohmann::json;
 
 class GltfPose : public GltfReading {};
 
-json& primitive(GltfWriter& gltf) {
-    return gltf.root["meshes"][0]["primitives"][0];
-}
-
 void expect_near(const glm::vec3& actual, const glm::vec3& expected) {
     EXPECT_NEAR(glm::distance(actual, expected), 0, 1e-5)
         << actual.x << ' ' << actual.y << ' ' << actual.z;

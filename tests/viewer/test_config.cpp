@@ -39,6 +39,11 @@ class RandomOptions {
         Options options;
         options.scene = text();
         options.output = text() + "x.png";
+        maybe([&] {
+            options.scene = text() + "x.obj";
+            options.z_up = below(2) == 0;
+            options.strict = below(2) == 0;
+        });
         options.size = {1 + below(20000), 1 + below(20000)};
         options.view = below(interop::kViewCount);
         maybe([&] { options.split = {side(), side()}; });

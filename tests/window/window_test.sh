@@ -292,8 +292,10 @@ check_frames_what_is_asked_for() {
     done
     # A material that was clicked is nearer then.
     read_camera
-    local far=$line material
+    local far=$line
     press shift+f
+    read_camera
+    [[ $line == "$far" ]] || fail "framed what nobody clicked: $line"
     click 128 85
     wait_until grep -q '^pixel 128,85' "$work/out"
     press shift+f
