@@ -71,8 +71,9 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     app.add_option("--threads", settings.threads, "threads to use [one a processor]")
         ->check(CLI::Range(1, 1024).description(""))
         ->type_name("N");
-    app.add_option("--depfile", settings.depfile,
-                   "write a rule for make: the output depends on every file that the scene names")
+    app.add_option(
+           "--depfile", settings.depfile,
+           "write a rule for make or ninja: the output depends on the scene and all that it names")
         ->type_name("FILE");
     app.add_option("--stats", settings.stats, "write counts, errors, times and memory as JSON")
         ->type_name("FILE.json");

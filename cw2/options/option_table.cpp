@@ -283,8 +283,8 @@ std::vector<Setting> all_settings() {
               "where the right side begins, in parts of the width [0.5]", &O::divider,
               in(kDividerRange)),
         value("exposure", "STOPS",
-              "multiplies what a PNG or the window shows by 2^STOPS [1.65 for shaded, which makes "
-              "white paper white; else 0]",
+              "multiplies what a PNG or the window shows by 2^STOPS, -64 to 64 [1.65 for shaded, "
+              "which makes white paper white; else 0]",
               &O::exposure, in_optional(kExposureRange)),
         value("false-color", "auto|LOW,HIGH",
               "shows luminance as colours, by its logarithm if LOW > 0; auto: the view's range",
