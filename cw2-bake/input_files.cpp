@@ -1,14 +1,16 @@
 #include "cw2-bake/input_files.h"
 
-#include <glob.h>
+#include <fnmatch.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "common/io.h"
 #include "cw2-bake/base/diagnostics.h"
@@ -21,18 +23,50 @@ namespace fs = std::filesystem;
 bool is_same_file(const fs::path& a, const fs::path& b) {
     std::error_code error;
     if (fs::equivalent(a, b, error)) return true;
-    const fs::path canonical = fs::weakly_canonical(a, error);
-    return !error && canonical == fs::weakly_canonical(b, error) && !error;
+    // Of a relative path none of which exists, weakly_canonical() would not make an absolute one.
+    const auto canonical = [&](const fs::path& path) {
+        return fs::weakly_canonical(fs::absolute(path), error);
+    };
+    const fs::path of_a = canonical(a);
+    return !error && of_a == canonical(b) && !error;
 }
 
-/// Whether make, which expands brackets, would take other files for `name`.
-bool is_pattern(const std::string& name) {
-    if (name.find('[') == name.npos) return false;
-    glob_t found{};
-    const bool any = ::glob(name.c_str(), 0, nullptr, &found) == 0;
-    const bool itself = any && found.gl_pathc == 1 && found.gl_pathv[0] == name;
-    ::globfree(&found);
-    return any && !itself;
+/// What in `folder` the pattern `component` of a path matches.
+std::vector<fs::path> matches(const fs::path& folder, const std::string& component) {
+    std::vector<fs::path> found;
+    std::error_code error;
+    fs::directory_iterator at(folder.empty() ? "." : folder, error);
+    for (; !error && at != fs::directory_iterator(); at.increment(error)) {
+        const fs::path entry = at->path().filename();
+        if (::fnmatch(component.c_str(), entry.c_str(), FNM_PERIOD) == 0)
+            found.push_back(folder / entry);
+    }
+    return found;
+}
+
+/// Whether make, which expands brackets, would take other files for `path`. glob() tells, too, but
+/// its paths can be more and more with every component.
+bool is_pattern(const fs::path& path) {
+    constexpr std::size_t kMostPaths = 64;
+    if (path.native().find('[') == std::string::npos) return false;
+    std::vector<fs::path> paths{""};
+    for (const fs::path& component : path) {
+        const bool may_match = component.native().find_first_of("[\\") != std::string::npos;
+        std::vector<fs::path> next;
+        for (const fs::path& parent : paths) {
+            if (may_match) {
+                std::ranges::move(matches(parent, component.native()), std::back_inserter(next));
+            } else {
+                next.push_back(parent / component);
+            }
+        }
+        if (next.size() > kMostPaths) return true;
+        paths = std::move(next);
+    }
+    return std::ranges::any_of(paths, [&](const fs::path& other) {
+        std::error_code error;
+        return other != path && fs::exists(other, error);
+    });
 }
 
 [[noreturn]] void refuse(const fs::path& name) {
@@ -46,9 +80,9 @@ std::string escaped(const fs::path& path) {
     const bool is_control =
         std::ranges::any_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7F; });
     const bool is_archive = name.ends_with(')') && name.find('(') != name.npos;
-    if (is_control || is_archive || is_pattern(name) || name.empty() || name.front() == '=' ||
+    if (is_control || is_archive || name.empty() || name.front() == '=' ||
         name.find_first_of("\"&';*?<>|^`") != name.npos ||
-        std::string_view(" \\:").find(name.back()) != std::string_view::npos)
+        std::string_view(" \\:").find(name.back()) != std::string_view::npos || is_pattern(path))
         refuse(path);
     // Behind ./ nothing is an operator, or somebody's home.
     std::string text = name.find_first_of("~+!-%") == 0 ? "./" : "";
@@ -92,16 +126,10 @@ std::vector<fs::path> input_files(const SourceScene& scene, const Settings& sett
 void refuse_overwriting(const Settings& settings, const std::vector<fs::path>& inputs) {
     std::vector<fs::path> outputs;
     const auto take = [&](const fs::path& output) {
-        // The inputs exist, so no output that does not can be one of them.
-        const auto is_output = [&](const fs::path& path) {
-            std::error_code error;
-            return fs::equivalent(output, path, error);
-        };
-        std::error_code error;
-        if (fs::exists(output, error) && std::ranges::any_of(inputs, is_output))
+        const auto is_output = [&](const fs::path& path) { return is_same_file(output, path); };
+        if (std::ranges::any_of(inputs, is_output))
             throw BakeError(output.string() + ": is an input; the output must be another file");
-        if (std::ranges::any_of(outputs,
-                                [&](const fs::path& o) { return is_same_file(output, o); }))
+        if (std::ranges::any_of(outputs, is_output))
             throw BakeError(output.string() + ": is named for two outputs");
         outputs.push_back(output);
     };

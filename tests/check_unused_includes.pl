@@ -38,6 +38,7 @@ cstring         | (?:mem(?:cpy|cmp|set|move|chr)|str(?:len|n?cmp|n?cpy|r?chr|str
 deque           | std::deque\b
 exception       | std::(?:exception|current_exception|rethrow_exception|make_exception_ptr|terminate|uncaught_exceptions)
 filesystem      | (?:std::)?filesystem\b
+fnmatch.h       | (?:fnmatch|FNM_\w+)
 forward_list    | std::forward_list\b
 fstream         | std::[io]?fstream\b
 functional      | std::(?:function|hash|less|greater|equal_to|plus|multiplies|minus|bind|ref|cref|invoke|identity|mem_fn|reference_wrapper|not_fn|bit_\w+|logical_\w+)\b

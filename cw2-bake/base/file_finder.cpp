@@ -115,12 +115,12 @@ fs::path FileFinder::in_another_case(const fs::path& folder, const std::string& 
     std::vector<fs::path> paths{path.is_absolute() ? path.root_path() : folder};
     for (const fs::path& component : path.relative_path()) {
         if (component.empty() || component == ".") continue;
+        if (component == "..") {
+            for (fs::path& parent : paths) parent /= component;
+            continue;
+        }
         std::vector<fs::path> next;
         for (const fs::path& parent : paths) {
-            if (component == "..") {
-                next.push_back(parent / component);
-                continue;
-            }
             const Listing& listing = list(parent);
             const auto [begin, end] = listing.by_folded.equal_range(folded(component.native()));
             for (auto at = begin; at != end; ++at)
@@ -177,7 +177,8 @@ FoundFile FileFinder::find(const fs::path& folder, std::span<const std::string> 
     }
     const fs::path named = folder / readings.front();
     std::string note = near_misses(named);
-    if (note.empty()) note = near_misses(folder / last_component(readings.front()));
+    const std::string last = last_component(readings.front());
+    if (note.empty() && last != readings.front()) note = near_misses(folder / last);
     return {named, false, note};
 }
 

@@ -36,6 +36,7 @@ Reach reach_of(std::span<const glm::vec3> positions, std::span<const Corner> cor
 
 std::optional<glm::dvec3> distant_origin(std::span<const glm::vec3> positions,
                                          std::span<const Corner> corners) {
+    if (corners.empty()) return std::nullopt;
     // Of fewer positions the extent can only be smaller, and each is at most one extent nearer.
     constexpr std::size_t kLooks = 1024;
     const Reach some = reach_of(positions, corners, corners.size() / kLooks + 1);

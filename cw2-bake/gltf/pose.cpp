@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "cw2-bake/gltf/json.h"
@@ -120,6 +121,12 @@ void add_morph_targets(const tinygltf::Primitive& primitive, const std::vector<d
             const std::size_t at =
                 i / static_cast<std::size_t>(moved) * stride + i % static_cast<std::size_t>(moved);
             values[at] = static_cast<float>(values[at] + weights[t] * deltas[i]);
+            if (!std::isfinite(values[at])) {
+                accessors.fail(
+                    target->second,
+                    fmt::format("element {} times its weight is beyond the range of floats",
+                                i / static_cast<std::size_t>(moved)));
+            }
         }
     }
 }

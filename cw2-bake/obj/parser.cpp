@@ -180,7 +180,8 @@ Found ChunkParser::number(const char*& p, T& value) const {
     const char* digits = *p == '+' && p[1] != '-' ? p + 1 : p;
     const auto [end, error] = fast_float::from_chars(digits, limit_, value);
     // Microsoft's C library writes 1.#INF, -1.#IND and 1.#QNAN.
-    const bool is_special = *end == '#' && end[-1] == '.' && std::isalpha(end[1]);
+    const bool is_special =
+        *end == '#' && end[-1] == '.' && std::isalpha(static_cast<unsigned char>(end[1]));
     if (error != std::errc() || (!ends_word(*end) && !is_special)) return Found::no_number;
     if (is_special || !std::isfinite(value)) return Found::no_finite_number;
     value += T{0};  // -0 becomes +0
@@ -208,7 +209,7 @@ const char* ChunkParser::position(const char* p) {
     } else {
         glm::dvec3 far;
         found = vector(p, far);
-        v = glm::vec3(far - context_.origin);
+        v = glm::vec3(far - context_.origin) + 0.0f;  // no -0
     }
     if (found == Found::line_continues) return nullptr;
     if (found != Found::number) fail(problem(found, p));

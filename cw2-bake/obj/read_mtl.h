@@ -33,9 +33,8 @@ struct MtlMaterial {
 ///   two of them that have no map of their own.
 /// - norm, map_Kn (-bm) -> normal map; map_Bump, bump (-bm) -> bump map; map_d -> alpha map.
 /// - Ke, map_Ke (map_emissive) -> emission, with factors as those of the base colour.
-/// - d, Tr below opaque with no map_d: blend and opacity, with one warning for the file, since it
-/// is
-///   drawn opaque.
+/// - d, Tr below opaque with no map_d: blend and opacity, with one warning for the file, since
+///   it is drawn opaque.
 /// - Ka, Ks, Ni, illum 0 to 2, and what states its neutral value (Tf 1 1 1, Pc 0) say nothing.
 /// - Texture options -s, -o, -clamp, -imfchan and -bm are honoured.
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& path,

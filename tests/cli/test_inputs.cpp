@@ -130,6 +130,19 @@ TEST_F(Inputs, NoNameIsSplitExpandedOrRun) {
     bake::depfile_text("out.cw2mesh", {"scene.obj", "tex[1].png"});
     write("tex1.png", "");
     EXPECT_THROW(bake::depfile_text("out.cw2mesh", {"scene.obj", "tex[1].png"}), bake::BakeError);
+    fs::create_directory("a[b]");
+    write("a[b]/tex.png", "");
+    fs::create_directory("ab");
+    bake::depfile_text("out.cw2mesh", {"scene.obj", "a[b]/tex.png"});
+    write("ab/tex.png", "");
+    EXPECT_THROW(bake::depfile_text("out.cw2mesh", {"scene.obj", "a[b]/tex.png"}), bake::BakeError);
+    // A pattern of ever more paths costs no time.
+    for (const char* many : {"/*/..", "/[!~][!~][!~]/.."}) {
+        std::string name;
+        for (int i = 0; i < 200; ++i) name += many;
+        EXPECT_THROW(bake::depfile_text("out.cw2mesh", {"scene.obj", name + "/tm[p]"}),
+                     bake::BakeError);
+    }
 }
 
 TEST_F(Inputs, NamesAreEscapedForMake) {
@@ -176,6 +189,10 @@ TEST_F(Inputs, AnOutputThatIsAnInputIsRefused) {
     EXPECT_TRUE(refused({"-o", "mask.png"}));
     EXPECT_TRUE(refused({"-o", "out.cw2mesh", "--stats", "scene.mtl"}));
     EXPECT_TRUE(refused({"-o", "out.cw2mesh", "--depfile", "mask.png"}));
+    fs::rename(here("mask.png"), here("away"));
+    EXPECT_TRUE(refused({"-o", "out.cw2mesh", "--stats", "./mask.png"})) << "though it is missing";
+    EXPECT_FALSE(fs::exists(here("mask.png")));
+    fs::rename(here("away"), here("mask.png"));
     EXPECT_FALSE(fs::exists(here("out.cw2mesh")));
     const Outcome twice = bake({"scene.obj", "-o", "out.cw2mesh", "--stats", "out.cw2mesh"});
     EXPECT_EQ(twice.status, 1);

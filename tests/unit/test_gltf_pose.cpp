@@ -194,6 +194,16 @@ TEST_F(GltfPose, MorphTargetsThatDoNotFitAreErrors) {
     EXPECT_EQ(error(gltf),
               "scene.glb: /meshes/0/primitives/0/targets/0/POSITION: is 70, but there "
               "are 5 accessors");
+    // What they add up to has a place in floats, too: 0 x infinity or infinity - infinity has none.
+    const int color = gltf.accessor(std::vector<float>(16, 0.5f), kFloat, "VEC4");
+    const int up = gltf.accessor(std::vector<float>(16, 1e30f), kFloat, "VEC4");
+    const int down = gltf.accessor(std::vector<float>(16, -1e30f), kFloat, "VEC4");
+    primitive(gltf)["attributes"]["COLOR_0"] = color;
+    primitive(gltf)["targets"] = {{{"COLOR_0", up}}, {{"COLOR_0", down}}};
+    gltf.root["meshes"][0]["weights"] = {1e30, 1e30};
+    EXPECT_EQ(error(gltf), "scene.glb: /accessors/" + std::to_string(up) +
+                               ": element 0 times its weight is beyond the range of floats");
+    primitive(gltf)["attributes"].erase("COLOR_0");
     // Each would take no byte of the file, and as much time as the square has vertices.
     gltf.root["accessors"][0] = {{"componentType", kFloat}, {"count", 1 << 24}, {"type", "VEC3"}};
     primitive(gltf)["attributes"] = {{"POSITION", 0}};

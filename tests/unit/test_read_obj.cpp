@@ -648,6 +648,15 @@ TEST(ReadObj, PositionsFarAwayAreReadInDoubleRelativeToAnOrigin) {
     EXPECT_EQ(read(TempFolder(), text, 40).scene.positions, reading.scene.positions);
 }
 
+TEST(ReadObj, PositionsRelativeToAnOriginHaveNoMinusZero) {
+    const bake::SourceScene scene =
+        read("v -1e-50 4600000 -0\nv 0.75 4600000 0\nv 0 4600001 1\nf 1 2 3\n").scene;
+    ASSERT_NE(scene.origin.y, 0.0);
+    ASSERT_EQ(scene.origin.x, 0.0);
+    EXPECT_EQ(scene.positions[0].x, 0.0f);
+    EXPECT_FALSE(std::signbit(scene.positions[0].x));
+}
+
 TEST(ReadObj, WhatFloatsCannotTellApartIsReadRelativeToAnOrigin) {
     for (const double size : {1e-3, 0.01, 0.09, 1.0}) {
         for (const double place : {1e6, 1e6 + 0.031, -3e8}) {
