@@ -55,7 +55,7 @@ struct BumpMap {
     float scale = 1.0f;
 };
 
-/// Factors are linear and multiply their map's texels; see the material rules of the README.
+/// Factors are linear and multiply their map's texels; see the material rules of docs/cw2-bake.md.
 struct SourceMaterial {
     std::string name;
     glm::vec3 base_color{0.8f};  ///< linear, [0, 1]

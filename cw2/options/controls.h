@@ -1,5 +1,5 @@
-// What keys and mouse do in the window, stated once: the window, its list of keys, --help and the
-// README all take it from here.
+// What keys and mouse do in the window, stated once: the window, its list of keys, --help and
+// docs/cw2.md all take it from here.
 #pragma once
 
 #include <array>
@@ -87,7 +87,7 @@ inline constexpr std::array kControls{
 /// All of them as the end of --help.
 std::string controls_text();
 
-/// The same as the rows of the README's table.
+/// The same as the rows of the table in docs/cw2.md.
 std::string controls_markdown();
 
 }  // namespace cw2

@@ -21,13 +21,13 @@ std::optional<CommandKind> kind_of(int key, int modifiers = 0) {
     return command ? std::optional(command->kind) : std::nullopt;
 }
 
-TEST(Controls, TheReadmeHasTheTable) {
-    std::ifstream file(CW2_SOURCE_DIR "/README.md");
-    const std::string readme{std::istreambuf_iterator<char>(file), {}};
+TEST(Controls, TheReferenceHasTheTable) {
+    std::ifstream file(CW2_SOURCE_DIR "/docs/cw2.md");
+    const std::string page{std::istreambuf_iterator<char>(file), {}};
     EXPECT_NE(
-        readme.find("| key or mouse | does |\n| --- | --- |\n" + cw2::controls_markdown() + "\n"),
+        page.find("| key or mouse | does |\n| --- | --- |\n" + cw2::controls_markdown() + "\n"),
         std::string::npos)
-        << "the README should have:\n"
+        << "docs/cw2.md should have:\n"
         << cw2::controls_markdown();
 }
 
