@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/vec2.hpp>
@@ -10,15 +9,13 @@
 #include <limits>
 
 #include "cw2-bake/textures/srgb.h"
-#include "mesh-format/tangent_frame.h"
+#include "mesh-format/vertices.h"
 
 namespace bake {
 namespace {
 
 using mesh_format::Document;
 using mesh_format::MeshRecord;
-using mesh_format::PositionForm;
-using mesh_format::UvForm;
 using nlohmann::ordered_json;
 
 enum : int { kFloat = 5126, kUnsignedShort = 5123, kUnsignedInt = 5125 };
@@ -31,25 +28,11 @@ struct Vertices {
     std::vector<glm::u16vec4> colors;  ///< linear, 65535 is 1; empty if the mesh has none
 };
 
-/// A vector as the vertices hold it: floats, or words q that stand for origin + step * q.
-template <int N>
-glm::vec<N, float> vector_of(const std::byte* bytes, bool words, const glm::vec<N, float>& origin,
-                             const glm::vec<N, float>& step) {
-    if (!words) {
-        glm::vec<N, float> vector;
-        std::memcpy(&vector, bytes, sizeof vector);
-        return vector;
-    }
-    glm::vec<N, std::uint16_t> q;
-    std::memcpy(&q, bytes, sizeof q);
-    return origin + step * glm::vec<N, float>(q);
-}
-
 /// Every byte that a channel may be is another word.
-glm::u16vec4 linear_words(const std::byte* color) {
+glm::u16vec4 linear_words(const std::uint8_t (&color)[4]) {
     glm::u16vec4 words;
     for (int channel = 0; channel < 4; ++channel) {
-        const auto byte = std::to_integer<std::uint8_t>(color[channel]);
+        const std::uint8_t byte = color[channel];
         const float linear = channel < 3 ? srgb().to_linear(byte) : byte / 255.0f;
         words[channel] = static_cast<std::uint16_t>(std::lround(65535.0f * linear));
     }
@@ -57,26 +40,16 @@ glm::u16vec4 linear_words(const std::byte* color) {
 }
 
 Vertices vertices_of(const Document& document, const MeshRecord& mesh) {
-    const mesh_format::VertexLayout layout = mesh_format::vertex_layout(mesh.forms);
-    // Exact: the step is a power of two, and origins and words fit a float's 24 bits.
-    const glm::vec3 step(document.scene.position_step);
-    const glm::vec3 origin = step * glm::vec3(glm::make_vec3(mesh.origin));
     Vertices vertices;
     for (std::uint32_t i = 0; i < mesh.vertex_count; ++i) {
-        const std::byte* vertex =
-            document.vertices.data() + mesh.vertex_offset + std::size_t{i} * layout.stride;
-        const mesh_format::TangentFrame frame =
-            mesh_format::unpack_frame(mesh.forms.frame, vertex + layout.frame_offset);
-        vertices.positions.push_back(
-            vector_of<3>(vertex, mesh.forms.position == PositionForm::quantised, origin, step));
-        vertices.normals.emplace_back(frame.normal[0], frame.normal[1], frame.normal[2]);
-        vertices.tangents.emplace_back(frame.tangent[0], frame.tangent[1], frame.tangent[2],
-                                       frame.handedness);
+        const mesh_format::Vertex vertex = mesh_format::unpack_vertex(document, mesh, i);
+        const mesh_format::TangentFrame& frame = vertex.frame;
+        vertices.positions.push_back(glm::make_vec3(vertex.position));
+        vertices.normals.push_back(glm::make_vec3(frame.normal));
+        vertices.tangents.emplace_back(glm::make_vec3(frame.tangent), frame.handedness);
+        vertices.uvs.push_back(glm::make_vec2(vertex.uv));
         if (mesh.forms.color != mesh_format::ColorForm::none)
-            vertices.colors.push_back(linear_words(vertex + layout.color_offset));
-        vertices.uvs.push_back(
-            vector_of<2>(vertex + layout.uv_offset, mesh.forms.uv == UvForm::quantised,
-                         glm::make_vec2(mesh.uv_origin), glm::make_vec2(mesh.uv_step)));
+            vertices.colors.push_back(linear_words(vertex.color));
     }
     return vertices;
 }
