@@ -1,0 +1,377 @@
+#!/usr/bin/env python3
+"""Reads .cw2mesh files of format version 4, as docs/format.md describes them.
+
+    import read_cw2mesh
+    scene = read_cw2mesh.read("model.cw2mesh")
+    for mesh in scene.meshes:
+        print(scene.materials[mesh.material].name, len(mesh.vertices), mesh.vertices[0].position)
+
+It needs Python 3.8 and nothing else. `python3 read_cw2mesh.py FILE` prints what is in a file. What is
+no sound file raises FormatError.
+"""
+
+import collections
+import math
+import struct
+import sys
+
+VERSION = 4
+SECTIONS = ("scene", "meshes", "chunks", "materials", "textures", "sources", "strings", "vertices",
+            "indices", "texels", "encoded_vertices", "encoded_indices")
+MAP_USES = ("base_color", "roughness", "metalness", "normal", "alpha_mask", "emission")
+POSITION_FORMS = ("quantised", "f32")
+FRAME_FORMS = ("quat48", "quat32", "half3", "f32")
+UV_FORMS = ("quantised", "f32")
+COLOR_FORMS = ("none", "rgba8")
+NO_TEXTURE = 0xFFFFFFFF
+
+# Texture formats: name, texels along a side of a block, bytes of a block, channels of a texel.
+FORMATS = (("r8_unorm", 1, 1, 1), ("rgba8_unorm", 1, 4, 4), ("rgba8_srgb", 1, 4, 4),
+           ("bc1_srgb", 4, 8, 4), ("bc4_unorm", 4, 8, 1), ("bc5_unorm", 4, 16, 2))
+
+
+class FormatError(ValueError):
+    """Bytes that are no sound file of this format."""
+
+
+def require(condition, what):
+    if not condition:
+        raise FormatError(what)
+
+
+class Record:
+    """A record of the file: "name 3f" is a field of three floats, "name I" one uint32."""
+
+    def __init__(self, *fields):
+        self.fields = [field.split() for field in fields]
+        self.struct = struct.Struct("<" + "".join(form for _, form in self.fields))
+
+    def read(self, data, offset=0):
+        values = iter(self.struct.unpack_from(data, offset))
+        result = Values()
+        for name, form in self.fields:
+            count = int(form[:-1]) if len(form) > 1 else 0
+            value = tuple(next(values) for _ in range(count)) if count else next(values)
+            setattr(result, name, value)
+        return result
+
+    def read_all(self, data, what):
+        require(len(data) % self.struct.size == 0, f"section {what} ends within a record")
+        return [self.read(data, offset) for offset in range(0, len(data), self.struct.size)]
+
+
+class Values:
+    """What a record holds, by the names of its fields."""
+
+    def __repr__(self):
+        return repr(self.__dict__)
+
+
+SECTION = Record("offset Q", "size Q", "checksum Q")
+HEADER = Record("magic 8c", "version I", "header_size I", "file_size Q", "checksum Q")
+SCENE = Record(
+    "origin 3d", "vertex_bytes Q", "index_count Q", "bounds_min 3f", "bounds_max 3f", "radius f",
+    "position_step f", "position_error f", "frame_error_mean f", "frame_error_max f", "uv_error f",
+    "flags I", "camera_position 3f", "camera_target 3f", "camera_fov f", "light_position 3f",
+    "light_color 3f")
+MESH = Record(
+    "material I", "forms 4B", "vertex_count I", "index_count I", "vertex_offset Q", "first_index Q",
+    "origin 3i", "uv_origin 2f", "uv_step 2f", "bounds_min 3f", "bounds_max 3f", "first_chunk I",
+    "chunk_count I", "reserved I")
+CHUNK = Record("first_index I", "index_count I", "center 3f", "radius f", "cone_axis 3f", "cone_cutoff f")
+MATERIAL = Record(
+    "name 2I", "base_color 3f", "roughness f", "metalness f", "alpha_cutoff f", "normal_scale f",
+    "emission 3f", "opacity f", "flags I", "textures 6I")
+TEXTURE = Record(
+    "name 2I", "format I", "flags I", "width I", "height I", "mip_count I", "psnr f", "offset Q", "size Q",
+    "checksum Q")
+SOURCE = Record("key 2Q", "texture I", "alpha_mask I", "flags I", "reserved I")
+
+Vertex = collections.namedtuple("Vertex", "position normal tangent handedness uv color")
+Vertex.__doc__ = """A vertex as numbers: position in scene units relative to the scene's origin; unit
+normal and tangent, and handedness s = 1 or -1, with bitangent s cross(normal, tangent); uv, whose v = 0
+is the top row of an image; color as four bytes, or None."""
+
+
+def checksum(data):
+    """Of bytes, as the file's records state it."""
+    words = struct.iter_unpack("<Q", bytes(data) + bytes(-len(data) % 8))
+    lanes = [0, 1, 2, 3]
+    for i, (word,) in enumerate(words):
+        lanes[i & 3] = fold(lanes[i & 3], word)
+    result = len(data)
+    for lane in lanes:
+        result = fold(result, lane)
+    return result
+
+
+def fold(lane, word):
+    product = (lane ^ word) * 0x9E3779B97F4A7C15 & 0xFFFFFFFFFFFFFFFF
+    return (product << 29 | product >> 35) & 0xFFFFFFFFFFFFFFFF
+
+
+def split_sections(data):
+    """The header's sections by name, once their places and checksums are found to be right."""
+    require(data[:8] == b"CW2MESH\0", "is no .cw2mesh file")
+    require(len(data) >= HEADER.struct.size + 24 * len(SECTIONS), "is truncated")
+    header = HEADER.read(data)
+    require(header.version == VERSION, f"has format version {header.version}, not {VERSION}")
+    require(header.header_size == HEADER.struct.size + 24 * len(SECTIONS), "the header's size is wrong")
+    blank = data[:24] + bytes(8) + data[32:header.header_size]
+    require(header.checksum == checksum(blank), "is altered: wrong header checksum")
+    require(header.file_size == len(data), "is truncated, or has bytes after its end")
+    sections, end = {}, header.header_size
+    for i, name in enumerate(SECTIONS):
+        section = SECTION.read(data, HEADER.struct.size + 24 * i)
+        require(section.offset == (end + 63) // 64 * 64, f"section {name} is not where it belongs")
+        require(not any(data[end:section.offset]), "is altered: a byte between two sections")
+        end = section.offset + section.size
+        require(end <= len(data), f"section {name} is not where it belongs")
+        sections[name] = data[section.offset:end]
+        if name != "texels":  # each texture has its own
+            require(checksum(sections[name]) == section.checksum, f"is altered: section {name}")
+    require(end == len(data), "is altered: bytes after the last section")
+    return sections
+
+
+def align(offset, is_wide):
+    return (offset + 3) // 4 * 4 if is_wide else offset
+
+
+def vertex_layout(forms):
+    """Offsets of frame, UV and colour in a vertex, and its bytes in all."""
+    position, frame, uv, color = forms
+    wide = "f32" in (position, frame, uv)
+    frame_at = align(12 if position == "f32" else 6, frame == "f32")
+    uv_at = align(frame_at + {"quat48": 6, "quat32": 4, "half3": 6, "f32": 16}[frame], uv == "f32")
+    color_at = uv_at + (8 if uv == "f32" else 4)
+    return frame_at, uv_at, color_at, align(color_at + (4 if color == "rgba8" else 0), wide)
+
+
+def tan_quarter_pi(x):
+    """tan(x pi / 4) for |x| <= 1, the polynomial that all decoders share."""
+    y = x * x
+    q = 0.0
+    for c in (0.00047622071, 0.000476221874, 0.0035121711, 0.0132167106, 0.0531149842, 0.214601785):
+        q = q * y + c
+    return x * (1 - (1 - y) * q)
+
+
+def digits_to_quaternion(digits, half, largest):
+    q = [tan_quarter_pi((digit - half) / half) for digit in digits]
+    q.insert(largest, 1.0)
+    return q
+
+
+def half_to_float(word):
+    """An IEEE half whose bit 14 is in use for something else."""
+    return struct.unpack("<e", struct.pack("<H", word & 0xBFFF))[0]
+
+
+def single(x):
+    """The 32-bit float nearest to a number."""
+    return struct.unpack("<f", struct.pack("<f", x))[0]
+
+
+def unpack_quat48(data, at):
+    words = struct.unpack_from("<3H", data, at)
+    largest = words[1] >> 15 | words[2] >> 15 << 1
+    return digits_to_quaternion([min(w & 0x7FFF, 32766) for w in words], 16383, largest), words[0] >> 15
+
+
+def unpack_quat32(data, at):
+    code, digits = struct.unpack_from("<I", data, at)[0], []
+    for _ in range(3):
+        code, digit = divmod(code, 811)
+        digits.append(digit)
+    return digits_to_quaternion(digits, 405, code & 3), code >> 2 & 1
+
+
+def unpack_half3(data, at):
+    words = struct.unpack_from("<3H", data, at)
+    x, y, z = map(half_to_float, words)
+    square = single(single(x * x + y * y) + z * z)  # in 32 bits: near w = 0 it matters
+    w = 1.0 if words[1] & 0x4000 else math.sqrt(max(0.0, 1 - square))
+    return (x, y, z, w), words[0] >> 14 & 1
+
+
+def unpack_f32(data, at):
+    x, y, z, w = (min(max(c, -1.0), 1.0) for c in struct.unpack_from("<4f", data, at))
+    if x * x + y * y + z * z + w * w < 0.5:  # no writer leaves less than 1
+        w = 1.0
+    return (x, y, z, abs(w)), data[at + 15] >> 7
+
+
+UNPACK_FRAME = {"quat48": unpack_quat48, "quat32": unpack_quat32, "half3": unpack_half3, "f32": unpack_f32}
+
+
+def rotate(q):
+    """The images of +x (the tangent) and +z (the normal) under a quaternion of any length."""
+    x, y, z, w = q
+    s = 2 / (x * x + y * y + z * z + w * w)
+    tangent = 1 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)
+    normal = s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y)
+    return tangent, normal
+
+
+def unpack_vertices(data, mesh, step):
+    """The vertices of `mesh`, whose first is at the start of `data`; `step` is the scene's."""
+    position_form, frame_form, uv_form, color_form = mesh.forms
+    frame_at, uv_at, color_at, stride = vertex_layout(mesh.forms)
+    unpack_frame = UNPACK_FRAME[frame_form]
+    vertices = []
+    for at in range(0, mesh.vertex_count * stride, stride):
+        if position_form == "quantised":
+            words = struct.unpack_from("<3H", data, at)
+            position = tuple(step * (o + q) for o, q in zip(mesh.origin, words))
+        else:
+            position = struct.unpack_from("<3f", data, at)
+        quaternion, left_handed = unpack_frame(data, at + frame_at)
+        tangent, normal = rotate(quaternion)
+        if uv_form == "quantised":
+            words = struct.unpack_from("<2H", data, at + uv_at)
+            uv = tuple(o + s * q for o, s, q in zip(mesh.uv_origin, mesh.uv_step, words))
+        else:
+            uv = struct.unpack_from("<2f", data, at + uv_at)
+        color = tuple(data[at + color_at:at + color_at + 4]) if color_form == "rgba8" else None
+        vertices.append(Vertex(position, normal, tangent, -1 if left_handed else 1, uv, color))
+    return vertices
+
+
+def level_sizes(texture):
+    """Width, height, offset in the payload and bytes of each level, largest first."""
+    _, side, block_bytes, _ = FORMATS[texture.format]
+    offset = 0
+    for level in range(texture.mip_count):
+        width, height = max(texture.width >> level, 1), max(texture.height >> level, 1)
+        size = -(-width // side) * -(-height // side) * block_bytes
+        yield width, height, offset, size
+        offset += (size + 15) // 16 * 16
+
+
+def bc1_texels(block):
+    """The 16 texels of a block, row by row."""
+    first, second, indices = struct.unpack("<HHI", block)
+
+    def expand(c):
+        r, g, b = c >> 11, c >> 5 & 63, c & 31
+        return r << 3 | r >> 2, g << 2 | g >> 4, b << 3 | b >> 2
+
+    a, b = expand(first), expand(second)
+    if first > second:
+        rest = [tuple((2 * x + y + 1) // 3 for x, y in zip(a, b)),
+                tuple((x + 2 * y + 1) // 3 for x, y in zip(a, b))]
+    else:
+        rest = [tuple((x + y + 1) // 2 for x, y in zip(a, b)), (0, 0, 0)]
+    colors = [bytes(c) + b"\xff" for c in (a, b, *rest)]
+    return [colors[indices >> 2 * i & 3] for i in range(16)]
+
+
+def bc4_texels(block):
+    a, b = block[0], block[1]
+    steps = 7 if a > b else 5
+    values = [a, b] + [((steps - i) * a + i * b + steps // 2) // steps for i in range(1, steps)]
+    values += [0, 255] if steps == 5 else []
+    indices = int.from_bytes(block[2:], "little")
+    return [bytes((values[indices >> 3 * i & 7],)) for i in range(16)]
+
+
+def bc5_texels(block):
+    return [red + green for red, green in zip(bc4_texels(block[:8]), bc4_texels(block[8:]))]
+
+
+BLOCK_TEXELS = {"bc1_srgb": bc1_texels, "bc4_unorm": bc4_texels, "bc5_unorm": bc5_texels}
+
+
+def texels(scene, texture, level=0):
+    """Width, height and the texels of a level: rows from the top, 8 bits a channel, of which r8 and bc4
+    have one, bc5 two (x and y of a normal), and the others four."""
+    width, height, offset, size = list(level_sizes(texture))[level]
+    name, side, block_bytes, channels = FORMATS[texture.format]
+    data = scene.texels[texture.offset + offset:texture.offset + offset + size]
+    if side == 1:
+        return width, height, data
+    across = -(-width // side)
+    rows = [bytearray() for _ in range(-(-height // side) * side)]
+    for i in range(0, size, block_bytes):
+        block = BLOCK_TEXELS[name](data[i:i + block_bytes])
+        top = i // block_bytes // across * side
+        for y in range(side):
+            rows[top + y] += b"".join(block[side * y:side * (y + 1)])
+    return width, height, b"".join(bytes(row[:width * channels]) for row in rows[:height])
+
+
+def read(path):
+    """The scene in a file: the fields of its scene record, meshes, materials, textures ..., whose
+    fields are those of docs/format.md; meshes have vertices and indices, too."""
+    with open(path, "rb") as file:
+        return parse(file.read())
+
+
+def parse(data):
+    sections = split_sections(data)
+    require(len(sections["scene"]) == SCENE.struct.size, "section scene does not hold one record")
+    scene = SCENE.read(sections["scene"])
+    scene.meshes = MESH.read_all(sections["meshes"], "meshes")
+    scene.chunks = CHUNK.read_all(sections["chunks"], "chunks")
+    scene.materials = MATERIAL.read_all(sections["materials"], "materials")
+    scene.textures = TEXTURE.read_all(sections["textures"], "textures")
+    scene.sources = SOURCE.read_all(sections["sources"], "sources")
+    scene.texels = sections["texels"]
+    for named in scene.materials + scene.textures:
+        offset, length = named.name
+        require(offset + length <= len(sections["strings"]), "a name lies outside the strings")
+        named.name = sections["strings"][offset:offset + length].decode(errors="replace")
+    for material in scene.materials:
+        material.textures = {use: None if index == NO_TEXTURE else index
+                             for use, index in zip(MAP_USES, material.textures)}
+        require(all(index is None or index < len(scene.textures)
+                    for index in material.textures.values()), "a texture does not exist")
+    for texture in scene.textures:
+        check_texture(texture, scene.texels)
+    require(not sections["encoded_vertices"], "is compressed, which this reader does not read")
+    for mesh in scene.meshes:
+        unpack_mesh(scene, mesh, sections["vertices"], sections["indices"])
+    return scene
+
+
+def check_texture(texture, data):
+    require(texture.format < len(FORMATS), "a texture has an unknown format")
+    require(0 < texture.width <= 16384 and 0 < texture.height <= 16384, "a texture's size is out of range")
+    require(texture.mip_count == max(texture.width, texture.height).bit_length(), "a mip count is wrong")
+    require(texture.size == sum((size + 15) // 16 * 16 for _, _, _, size in level_sizes(texture)),
+            "a texture's texels do not fit its size")
+    payload = data[texture.offset:texture.offset + texture.size]
+    require(len(payload) == texture.size and checksum(payload) == texture.checksum,
+            "is altered: wrong checksum of a texture's texels")
+
+
+def unpack_mesh(scene, mesh, vertices, indices):
+    names = (POSITION_FORMS, FRAME_FORMS, UV_FORMS, COLOR_FORMS)
+    require(all(form < len(forms) for form, forms in zip(mesh.forms, names)), "unknown vertex form")
+    mesh.forms = tuple(forms[form] for form, forms in zip(mesh.forms, names))
+    require(mesh.material < len(scene.materials), "a material does not exist")
+    end = mesh.vertex_offset + mesh.vertex_count * vertex_layout(mesh.forms)[3]
+    require(end <= len(vertices), "vertices lie outside their section")
+    require(2 * (mesh.first_index + mesh.index_count) <= len(indices), "indices lie outside their section")
+    mesh.indices = struct.unpack_from(f"<{mesh.index_count}H", indices, 2 * mesh.first_index)
+    require(not mesh.indices or max(mesh.indices) < mesh.vertex_count, "an index is out of range")
+    mesh.vertices = unpack_vertices(vertices[mesh.vertex_offset:end], mesh, scene.position_step)
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    try:
+        scene = read(sys.argv[1])
+    except (OSError, FormatError) as error:
+        sys.exit(f"{sys.argv[1]}: {error}")
+    for mesh in scene.meshes:
+        print(f"mesh: {mesh.vertex_count} vertices ({', '.join(mesh.forms)}), {mesh.index_count // 3} "
+              f"triangles, material {scene.materials[mesh.material].name}")
+    for texture in scene.textures:
+        print(f"texture {texture.name}: {texture.width} x {texture.height}, {FORMATS[texture.format][0]}")
+
+
+if __name__ == "__main__":
+    main()

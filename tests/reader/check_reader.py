@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+"""Holds docs/read_cw2mesh.py against the library, on a scene baked in every form.
+
+Usage: check_reader.py CW2_BAKE DUMP_CW2MESH
+"""
+
+import itertools
+import math
+import pathlib
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "docs"), str(ROOT / "tests")]
+sys.dont_write_bytecode = True
+import check_documents  # noqa: E402
+import read_cw2mesh  # noqa: E402
+
+BAKE, DUMP = sys.argv[1:3]
+
+
+def write_scene(folder):
+    """A bumpy sphere whose UVs are mirrored on one half and whose place is no round number, a
+    second material with a mask and vertex colours, and textures of odd sizes."""
+    random.seed(1)
+    rows, columns, lines = 24, 40, ["mtllib scene.mtl", "usemtl ball"]
+    for i, j in itertools.product(range(rows + 1), range(columns + 1)):
+        a, b = math.pi * i / rows, 2 * math.pi * j / columns
+        r = 3 + 0.2 * math.sin(5 * a) * math.cos(4 * b)
+        lines.append("v %f %f %f" % (-7.3 + r * math.sin(a) * math.cos(b), r * math.cos(a),
+                                     11.1 + r * math.sin(a) * math.sin(b)))
+        lines.append("vt %f %f" % (abs(2 * j / columns - 1) * 3 - 1, i / rows))
+    for i, j in itertools.product(range(rows), range(columns)):
+        a = i * (columns + 1) + j + 1
+        b, c, d = a + 1, a + columns + 2, a + columns + 1
+        lines.append("f " + " ".join(f"{v}/{v}" for v in (a, b, c, d)))
+    lines.append("usemtl leaf")
+    for i in range(5):
+        lines.append("v %f %f %f %f %f 0.25" % (i, 4 + i % 2, random.random(), i / 4, 1 - i / 4))
+    lines += ["vt 0 0", "vt 1 0", "vt 1 1", "f -5/-3 -4/-2 -3/-1", "f -3/-3 -2/-2 -1/-1", ""]
+    (folder / "scene.obj").write_text("\n".join(lines))
+    (folder / "scene.mtl").write_text(
+        "newmtl ball\nmap_Kd color.png\nmap_Pr rough.png\nnorm normal.png\n"
+        "newmtl leaf\nKd 0.5 0.6 0.7\nmap_d mask.png\n")
+    draw = check_documents.write_png
+    draw(folder / "color.png", 22, lambda x, y: (100 + 2 * x, 80 + 3 * x, 60 + x))
+    draw(folder / "rough.png", 13, lambda x, y: (19 * x,) * 3)
+    draw(folder / "normal.png", 20, lambda x, y: (118 + x, 138 - y, 254))
+    draw(folder / "mask.png", 9, lambda x, y: (255 * (x > y),) * 3)
+
+
+def put_checksum(data, start, end, at):
+    data[at:at + 8] = read_cw2mesh.checksum(data[start:end]).to_bytes(8, "little")
+
+
+class Reader(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        write_scene(cls.folder)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def bake(self, *options):
+        path = self.folder / "scene.cw2mesh"
+        subprocess.run([BAKE, self.folder / "scene.obj", "-o", path, "--quiet", *options], check=True)
+        return path
+
+    def compare(self, *options):
+        """Every vertex, index and texel is what the library says; returns the scene."""
+        return self.compare_file(self.bake(*options))
+
+    def compare_file(self, path):
+        scene = read_cw2mesh.read(path)
+        dump = subprocess.run([DUMP, path], check=True, stdout=subprocess.PIPE).stdout
+        at = 0
+        for mesh in scene.meshes:
+            self.assertEqual(struct.unpack_from("<2I", dump, at), (len(mesh.vertices), len(mesh.indices)))
+            at += 8
+            for vertex in mesh.vertices:
+                theirs = struct.unpack_from("<12f4B", dump, at)
+                at += 52
+                self.assertEqual(vertex.position, theirs[:3])
+                ours = (*vertex.normal, *vertex.tangent, vertex.handedness, *vertex.uv)
+                for a, b in zip(ours, theirs[3:12]):
+                    self.assertAlmostEqual(a, b, delta=1e-6)
+                self.assertEqual(vertex.color or (255,) * 4, theirs[12:])
+            self.assertEqual(mesh.indices, struct.unpack_from(f"<{len(mesh.indices)}H", dump, at))
+            at += 2 * len(mesh.indices)
+        for texture in scene.textures:
+            for level in range(texture.mip_count):
+                texels = read_cw2mesh.texels(scene, texture, level)[2]
+                self.assertEqual(dump[at:at + len(texels)], texels)
+                at += len(texels)
+        self.assertEqual(at, len(dump))
+        return scene
+
+    def test_every_form_of_a_vertex(self):
+        hands, forms = set(), set()
+        for frame in read_cw2mesh.FRAME_FORMS:
+            for positions in ("quantised", "f32"):
+                scene = self.compare("--textures", "none", "--tangent-frame", frame,
+                                     "--positions", positions)
+                hands |= {vertex.handedness for mesh in scene.meshes for vertex in mesh.vertices}
+                forms |= {mesh.forms for mesh in scene.meshes}
+        self.assertEqual(hands, {1, -1})
+        self.assertEqual({form[1] for form in forms}, set(read_cw2mesh.FRAME_FORMS))
+        self.assertEqual({form[0] for form in forms}, {"quantised", "f32"})
+        self.assertEqual({form[3] for form in forms}, {"none", "rgba8"})
+
+    def test_textures(self):
+        formats = set()
+        for kind in ("bc", "lossless"):
+            scene = self.compare("--textures", kind)
+            formats |= {read_cw2mesh.FORMATS[texture.format][0] for texture in scene.textures}
+            names = {scene.textures[index].name for material in scene.materials
+                     for index in material.textures.values() if index is not None}
+            self.assertEqual(names, {"color.png", "rough.png", "normal.png", "mask.png"})
+        self.assertEqual(formats, {form[0] for form in read_cw2mesh.FORMATS})
+
+    def test_bytes_that_no_bake_writes(self):
+        """Random codes of frames, and random blocks; checksums made right again."""
+        random.seed(3)
+        for frame in ("quat48", "quat32", "half3"):
+            path = self.bake("--tangent-frame", frame)
+            data = bytearray(path.read_bytes())
+            header = read_cw2mesh.HEADER.struct.size
+            place = {}
+            for i, name in enumerate(read_cw2mesh.SECTIONS):
+                place[name] = read_cw2mesh.SECTION.read(data, header + 24 * i)
+            for name in ("vertices", "texels"):
+                size = place[name].size
+                data[place[name].offset:place[name].offset + size] = random.randbytes(size)
+            for i, texture in enumerate(read_cw2mesh.read(path).textures):
+                start = place["texels"].offset + texture.offset
+                record = place["textures"].offset + i * read_cw2mesh.TEXTURE.struct.size
+                put_checksum(data, start, start + texture.size, record + 48)
+            for i, name in enumerate(read_cw2mesh.SECTIONS):
+                start, end = place[name].offset, place[name].offset + place[name].size
+                if name != "texels":
+                    put_checksum(data, start, end, header + 24 * i + 16)
+            data[24:32] = bytes(8)
+            put_checksum(data, 0, header + 24 * len(read_cw2mesh.SECTIONS), 24)
+            path.write_bytes(data)
+            self.compare_file(path)
+
+    def test_damage_is_found(self):
+        data = self.bake().read_bytes()
+        random.seed(2)
+        for _ in range(60):
+            at, size = random.randrange(len(data)), random.randrange(len(data))
+            altered = data[:at] + bytes([data[at] ^ 1 << random.randrange(8)]) + data[at + 1:]
+            for damaged in (altered, data[:size], data + b"\0"):
+                with self.assertRaises(read_cw2mesh.FormatError):
+                    read_cw2mesh.parse(damaged)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
