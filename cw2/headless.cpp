@@ -272,8 +272,9 @@ void render_headless(const Device& device, const Options& options) {
     Timings timings;
     Clock::time_point start = Clock::now();
     const Layouts layouts(device);
-    const Scene scene = load_scene(device, layouts, bake ? bake->baked() : options.scene,
-                                   texture_settings(options, device));
+    const Scene scene =
+        make_scene(device, layouts, load_scene_file(bake ? bake->baked() : options.scene),
+                   texture_settings(options, device));
     timings.load = milliseconds_since(start);
 
     if (options.pixel) print_pixel(device, layouts, scene, options);

@@ -328,9 +328,9 @@ class Session {
             wait_for(*bake);
             watch_ = FileWatch(bake->sources());
         }
-        return std::make_unique<Scene>(load_scene(device_, layouts_,
-                                                  bake ? bake->baked() : asked_.scene,
-                                                  texture_settings(asked_, device_)));
+        return std::make_unique<Scene>(
+            make_scene(device_, layouts_, load_scene_file(bake ? bake->baked() : asked_.scene),
+                       texture_settings(asked_, device_)));
     }
 
     /// Opens the current file of the list.
@@ -388,8 +388,9 @@ class Session {
     void open() {
         const Options& options = opening_->options;
         FileWatch watch(opening_->sources());
-        auto scene = std::make_unique<Scene>(
-            load_scene(device_, layouts_, opening_->file(), texture_settings(options, device_)));
+        auto scene =
+            std::make_unique<Scene>(make_scene(device_, layouts_, load_scene_file(opening_->file()),
+                                               texture_settings(options, device_)));
         ViewerState state(completed(options, scene->start(), scene->bounds()), scene->bounds(),
                           aspect_of(extent_));
         state.set(state.options(), state_.light_moves());
@@ -404,8 +405,9 @@ class Session {
 
     void reload() {
         const std::filesystem::path& path = opening_->options.scene;
-        auto scene = std::make_unique<Scene>(reload_scene(
-            device_, layouts_, opening_->file(), texture_settings(opening_->options, device_)));
+        auto scene = std::make_unique<Scene>(
+            make_scene(device_, layouts_, reload_scene_file(opening_->file()),
+                       texture_settings(opening_->options, device_)));
         presenter_.finish();
         scene_ = std::move(scene);
         // A bake may have read other files than the one before.

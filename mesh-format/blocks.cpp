@@ -99,20 +99,19 @@ void decode_block(TextureFormat format, const std::byte* block, std::byte* out,
 }  // namespace
 
 void decode_block_row(TextureFormat format, const std::byte* blocks, std::uint32_t width,
-                      std::uint32_t rows, std::byte* out) {
+                      std::uint32_t rows, std::byte* out, std::size_t pitch) {
     const std::size_t texel = decoded_texel_bytes(format);
-    const std::size_t stride = texel * width;
     for (std::uint32_t x = 0; x < width; x += 4, blocks += block_bytes(format)) {
         const std::uint32_t columns = std::min(width - x, 4u);
         std::byte* const place = out + texel * x;
         if (columns == 4 && rows == 4) {
-            decode_block(format, blocks, place, stride);
+            decode_block(format, blocks, place, pitch);
             continue;
         }
         std::array<std::byte, 64> whole;
         decode_block(format, blocks, whole.data(), 4 * texel);
         for (std::uint32_t y = 0; y < rows; ++y) {
-            std::memcpy(place + y * stride, whole.data() + y * 4 * texel, columns * texel);
+            std::memcpy(place + y * pitch, whole.data() + y * 4 * texel, columns * texel);
         }
     }
 }

@@ -15,8 +15,15 @@ constexpr std::uint32_t decoded_texel_bytes(TextureFormat format) {
 }
 
 /// Decodes a row of block_count(format, width) blocks to `rows` rows (at most 4) of `width` texels,
-/// tightly packed. Values between the two that a block states are rounded to 8 bits.
+/// each `pitch` bytes after the one before. Values between the two that a block states are rounded
+/// to 8 bits.
 void decode_block_row(TextureFormat format, const std::byte* blocks, std::uint32_t width,
-                      std::uint32_t rows, std::byte* out);
+                      std::uint32_t rows, std::byte* out, std::size_t pitch);
+/// The same, tightly packed.
+inline void decode_block_row(TextureFormat format, const std::byte* blocks, std::uint32_t width,
+                             std::uint32_t rows, std::byte* out) {
+    decode_block_row(format, blocks, width, rows, out,
+                     std::size_t{decoded_texel_bytes(format)} * width);
+}
 
 }  // namespace mesh_format

@@ -206,19 +206,17 @@ CW2_INLINE const char* PlainLines::line(const char* p) {
     if (*p == 'f') {
         p = face(after_keyword(p + 1));
         kind = kObjFaceText;
-    } else if (*p != 'v') {
-        return nullptr;
-    } else if (p[1] == 't') {
+    } else if (*p == 'v' && p[1] == 't') {
         p = uv(after_keyword(p + 2));
         kind = kObjUv;
-    } else if (p[1] == 'n') {
+    } else if (*p == 'v' && p[1] == 'n') {
         p = normal(after_keyword(p + 2));
         kind = kObjNormal;
-    } else if (!reads_positions_) {
-        return nullptr;
-    } else {
+    } else if (*p == 'v' && reads_positions_) {
         p = position(after_keyword(p + 1));
         kind = kObjPosition;
+    } else {
+        return nullptr;
     }
     if (p) chunk_.text_bytes[kind] += static_cast<std::size_t>(p - start);
     return p;

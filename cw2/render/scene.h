@@ -3,18 +3,14 @@
 
 #include <vulkan/vulkan.h>
 
-#include <array>
 #include <cstdint>
-#include <filesystem>
-#include <map>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "common/io.h"
 #include "cw2/render/camera.h"
-#include "cw2/render/merged_maps.h"
 #include "cw2/render/pipelines.h"
+#include "cw2/render/scene_file.h"
+#include "cw2/render/scene_textures.h"
 #include "cw2/vulkan/device.h"
 #include "cw2/vulkan/handle.h"
 #include "cw2/vulkan/resources.h"
@@ -49,18 +45,18 @@ struct SceneChunk {
     std::uint32_t index_count;
 };
 
-/// How textures are kept and sampled.
-struct TextureSettings {
-    float anisotropy = 1.0f;     ///< the samplers' largest ratio, 1 for none
-    bool decode_blocks = false;  ///< what is stored in blocks becomes single texels
-    bool merge_maps = false;     ///< normal, roughness and metalness in one image; needs the other
-};
-
 class Scene {
  public:
-    /// Uploads `document`, which is not needed afterwards. Throws VulkanError.
-    Scene(const Device& device, const Layouts& layouts, const mesh_format::Document& document,
-          const TextureSettings& settings);
+    /// Uploads the geometry of `file`, whose positions it takes, and makes room for the textures;
+    /// first_levels as of SceneTextures. Throws VulkanError.
+    Scene(const Device& device, const Layouts& layouts, SceneFile& file,
+          const TextureSettings& settings, const std::vector<std::uint32_t>& first_levels = {});
+
+    /// Uploads the contents of the textures; then the file is not needed any more. Throws
+    /// VulkanError.
+    void write_textures(const Device& device, const SceneFile& file) {
+        textures_.write(device, file.document);
+    }
 
     const Bounds& bounds() const { return bounds_; }
     const SceneStart& start() const { return start_; }
@@ -77,48 +73,23 @@ class Scene {
     VkDeviceSize memory_bytes() const;
 
  private:
-    struct Texture {
-        ImageHandle image;
-        ImageView view;
-        bool clamp = false;
-        std::array<ImageView, 2> scalar_views{};  ///< of merged maps: roughness, metalness
-    };
-    using Merged = std::map<MergedMaps, Texture>;
-
-    void upload_textures(const Device& device, const mesh_format::Document& document,
-                         const TextureSettings& settings, Uploader& uploader);
-    /// Chooses what is merged. Returns the textures that somebody needs as they are.
-    std::set<std::uint32_t> merge_maps(const mesh_format::Document& document);
     std::vector<VkDescriptorSet> make_material_sets(const Device& device, const Layouts& layouts,
                                                     const mesh_format::Document& document);
-    void write_material_set(const Device& device, VkDescriptorSet set,
-                            const mesh_format::MaterialRecord& material, std::size_t number) const;
 
     std::vector<glm::vec3> positions_;  ///< of all vertices, draw after draw
     Bounds bounds_;
     SceneStart start_;
     Buffer vertices_;
     Buffer indices_;
-    std::vector<Memory> texture_memory_;
-    /// The document's, those that are needed; then a white texel for what is absent.
-    std::vector<Texture> textures_;
-    Merged merged_;
-    std::vector<Merged::const_iterator> merged_of_material_;  ///< the end where there is none
-    Sampler repeat_;
-    Sampler clamp_;
+    SceneTextures textures_;
     DescriptorPool descriptor_pool_;
     std::vector<std::string> material_names_;
     std::vector<Draw> draws_;
     std::vector<SceneChunk> chunks_;
 };
 
-/// Reads, checks and uploads a .cw2mesh file. Throws common::FileError or VulkanError.
-Scene load_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
+/// All of a file, on the device. Throws VulkanError.
+Scene make_scene(const Device& device, const Layouts& layouts, SceneFile file,
                  const TextureSettings& settings);
-
-/// The same for a file that somebody may be writing: mapped bytes that are cut off would end the
-/// process, so these are read.
-Scene reload_scene(const Device& device, const Layouts& layouts, const std::filesystem::path& path,
-                   const TextureSettings& settings);
 
 }  // namespace cw2

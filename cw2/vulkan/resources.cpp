@@ -47,6 +47,12 @@ Memory allocate(const Device& device, const VkMemoryRequirements& requirements, 
     return {device.get(), memory, requirements.size};
 }
 
+std::byte* map(const Device& device, const Memory& memory) {
+    void* address = nullptr;
+    check(vkMapMemory(device.get(), memory.get(), 0, VK_WHOLE_SIZE, 0, &address), "vkMapMemory");
+    return static_cast<std::byte*>(address);
+}
+
 VkImageAspectFlags aspect_of(VkFormat format) {
     return format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }
@@ -65,16 +71,27 @@ Buffer make_buffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags u
     vkGetBufferMemoryRequirements(device.get(), handle, &requirements);
     buffer.memory = allocate(device, requirements, use);
     check(vkBindBufferMemory(device.get(), handle, buffer.memory.get(), 0), "vkBindBufferMemory");
-    if (use != MemoryUse::device) {
-        void* address = nullptr;
-        check(vkMapMemory(device.get(), buffer.memory.get(), 0, VK_WHOLE_SIZE, 0, &address),
-              "vkMapMemory");
-        buffer.mapped = {static_cast<std::byte*>(address), size};
-    }
+    if (use != MemoryUse::device) buffer.mapped = {map(device, buffer.memory), size};
     return buffer;
 }
 
-std::vector<Memory> bind_images(const Device& device, std::span<const VkImage> images) {
+bool host_can_write(const Device& device, const ImageSettings& settings) {
+    if (!device.is_cpu()) return false;
+    VkFormatProperties format;
+    vkGetPhysicalDeviceFormatProperties(device.physical(), settings.format, &format);
+    constexpr VkFormatFeatureFlags kSampled =
+        VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+    if ((format.linearTilingFeatures & kSampled) != kSampled) return false;
+    VkImageFormatProperties image{};
+    const VkResult result = vkGetPhysicalDeviceImageFormatProperties(
+        device.physical(), settings.format, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_LINEAR,
+        settings.usage, 0, &image);
+    return result == VK_SUCCESS && image.maxMipLevels >= settings.mip_count &&
+           image.maxExtent.width >= settings.extent.width &&
+           image.maxExtent.height >= settings.extent.height;
+}
+
+ImageMemory bind_images(const Device& device, std::span<const VkImage> images, bool host_writes) {
     std::vector<VkMemoryRequirements> blocks;
     std::vector<std::pair<std::size_t, VkDeviceSize>> places;  ///< of the images: block and offset
     for (const VkImage image : images) {
@@ -91,28 +108,40 @@ std::vector<Memory> bind_images(const Device& device, std::span<const VkImage> i
         blocks.back().size = places.back().second + needs.size;
         blocks.back().alignment = std::max(blocks.back().alignment, needs.alignment);
     }
-    std::vector<Memory> memory;
+    ImageMemory memory;
+    std::vector<std::byte*> addresses;
     for (const VkMemoryRequirements& needs : blocks) {
-        memory.push_back(allocate(device, needs, MemoryUse::device));
+        const MemoryUse use = host_writes ? MemoryUse::upload : MemoryUse::device;
+        memory.blocks.push_back(allocate(device, needs, use));
+        addresses.push_back(host_writes ? map(device, memory.blocks.back()) : nullptr);
     }
     for (std::size_t i = 0; i < images.size(); ++i) {
         const auto [block, offset] = places[i];
-        check(vkBindImageMemory(device.get(), images[i], memory[block].get(), offset),
+        check(vkBindImageMemory(device.get(), images[i], memory.blocks[block].get(), offset),
               "vkBindImageMemory");
+        memory.addresses.push_back(host_writes ? addresses[block] + offset : nullptr);
     }
     return memory;
 }
 
+LevelPlace level_place(const Device& device, VkImage image, std::uint32_t level) {
+    const VkImageSubresource subresource{VK_IMAGE_ASPECT_COLOR_BIT, level, 0};
+    VkSubresourceLayout layout;
+    vkGetImageSubresourceLayout(device.get(), image, &subresource, &layout);
+    return {layout.offset, layout.rowPitch};
+}
+
 ImageHandle make_image_handle(const Device& device, const ImageSettings& settings) {
-    const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                                 .imageType = VK_IMAGE_TYPE_2D,
-                                 .format = settings.format,
-                                 .extent = {settings.extent.width, settings.extent.height, 1},
-                                 .mipLevels = settings.mip_count,
-                                 .arrayLayers = 1,
-                                 .samples = settings.samples,
-                                 .tiling = VK_IMAGE_TILING_OPTIMAL,
-                                 .usage = settings.usage};
+    const VkImageCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .imageType = VK_IMAGE_TYPE_2D,
+        .format = settings.format,
+        .extent = {settings.extent.width, settings.extent.height, 1},
+        .mipLevels = settings.mip_count,
+        .arrayLayers = 1,
+        .samples = settings.samples,
+        .tiling = settings.host_writes ? VK_IMAGE_TILING_LINEAR : VK_IMAGE_TILING_OPTIMAL,
+        .usage = settings.usage};
     VkImage image = VK_NULL_HANDLE;
     check(vkCreateImage(device.get(), &info, nullptr, &image), "vkCreateImage");
     return {device.get(), image};
@@ -276,11 +305,10 @@ void Uploader::finish() {
     flush();
 }
 
-VkDeviceSize Uploader::stage(std::span<const std::byte> bytes) {
-    if (used_ + bytes.size() > kStagingBytes) flush();
+VkDeviceSize Uploader::stage(VkDeviceSize size) {
+    if (used_ + size > kStagingBytes) flush();
     const VkDeviceSize offset = used_;
-    std::memcpy(staging_.mapped.data() + offset, bytes.data(), bytes.size());
-    used_ = (offset + bytes.size() + kStagingAlignment - 1) / kStagingAlignment * kStagingAlignment;
+    used_ = (offset + size + kStagingAlignment - 1) / kStagingAlignment * kStagingAlignment;
     return offset;
 }
 
@@ -288,33 +316,36 @@ void Uploader::write_buffer(VkBuffer buffer, std::span<const std::byte> bytes) {
     VkDeviceSize done = 0;
     while (done < bytes.size()) {
         const auto piece = bytes.subspan(done, std::min(bytes.size() - done, kStagingBytes));
-        const VkBufferCopy copy{.srcOffset = stage(piece), .dstOffset = done, .size = piece.size()};
+        const VkBufferCopy copy{
+            .srcOffset = stage(piece.size()), .dstOffset = done, .size = piece.size()};
+        std::memcpy(staging_.mapped.data() + copy.srcOffset, piece.data(), piece.size());
         vkCmdCopyBuffer(commands_, staging_.handle.get(), buffer, 1, &copy);
         done += piece.size();
     }
 }
 
-void Uploader::write_image(VkImage image, VkExtent2D extent, TexelBlock block,
-                           std::span<const std::span<const std::byte>> levels) {
+void Uploader::write_image(VkImage image, const ImageSettings& settings, TexelBlock block,
+                           const WriteRows& write_rows) {
     const ImageUse written{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
                            VK_ACCESS_2_TRANSFER_WRITE_BIT};
     image_barrier(commands_, image, VK_IMAGE_ASPECT_COLOR_BIT,
                   {VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_NONE, VK_ACCESS_2_NONE}, written);
-    for (std::uint32_t level = 0; level < levels.size(); ++level) {
-        const std::uint32_t width = mesh_format::mip_extent(extent.width, level);
-        const std::uint32_t height = mesh_format::mip_extent(extent.height, level);
+    for (std::uint32_t level = 0; level < settings.mip_count; ++level) {
+        const std::uint32_t width = mesh_format::mip_extent(settings.extent.width, level);
+        const std::uint32_t height = mesh_format::mip_extent(settings.extent.height, level);
         const std::size_t row_bytes =
             std::size_t{(width + block.extent - 1) / block.extent} * block.bytes;
         const std::uint32_t row_count = (height + block.extent - 1) / block.extent;
-        const auto rows_at_once = static_cast<std::uint32_t>(kStagingBytes / row_bytes);
+        const auto rows_at_once = static_cast<std::uint32_t>(kStagingBytes / row_bytes) & ~3u;
         for (std::uint32_t row = 0; row < row_count; row += rows_at_once) {
             const std::uint32_t rows = std::min(rows_at_once, row_count - row);
             const std::uint32_t y = row * block.extent;
             const VkBufferImageCopy copy{
-                .bufferOffset = stage(levels[level].subspan(row * row_bytes, rows * row_bytes)),
+                .bufferOffset = stage(rows * row_bytes),
                 .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1},
                 .imageOffset = {0, static_cast<std::int32_t>(y), 0},
                 .imageExtent = {width, std::min(rows * block.extent, height - y), 1}};
+            write_rows(level, row, rows, staging_.mapped.data() + copy.bufferOffset);
             vkCmdCopyBufferToImage(commands_, staging_.handle.get(), image,
                                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
         }

@@ -5,7 +5,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <vector>
 
 #include "cw2/vulkan/device.h"
 #include "cw2/vulkan/handle.h"
@@ -43,14 +45,32 @@ struct ImageSettings {
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
     VkImageUsageFlags usage = 0;
     VkComponentSwizzle red = VK_COMPONENT_SWIZZLE_IDENTITY;  ///< what a view shows as red
+    bool host_writes = false;                                ///< see host_can_write()
 };
+
+/// Whether the host can write the contents of such an image in place: where the device is the CPU,
+/// and it samples images whose rows lie one after the other.
+bool host_can_write(const Device& device, const ImageSettings& settings);
 
 /// An image and its memory. Throws VulkanError.
 Image make_image(const Device& device, const ImageSettings& settings);
 
+/// The memory of images.
+struct ImageMemory {
+    std::vector<Memory> blocks;
+    std::vector<std::byte*> addresses;  ///< of the images, if the host writes them
+};
+
 /// Binds images to a few allocations, which must outlive their use, each shared by images that
 /// follow each other: devices allow as few as 4096 allocations. Throws VulkanError.
-std::vector<Memory> bind_images(const Device& device, std::span<const VkImage> images);
+ImageMemory bind_images(const Device& device, std::span<const VkImage> images, bool host_writes);
+
+/// Where a level of an image that the host writes begins, and the bytes from a row to the next.
+struct LevelPlace {
+    VkDeviceSize offset;
+    VkDeviceSize pitch;
+};
+LevelPlace level_place(const Device& device, VkImage image, std::uint32_t level);
 
 /// An image without memory or view.
 ImageHandle make_image_handle(const Device& device, const ImageSettings& settings);
@@ -101,16 +121,19 @@ class Uploader {
     explicit Uploader(const Device& device);
 
     void write_buffer(VkBuffer buffer, std::span<const std::byte> bytes);
+    /// Writes `count` rows of blocks of `level`, tightly packed, to `out`; the first is a multiple
+    /// of 4, and so is the count unless the level ends with them.
+    using WriteRows = std::function<void(std::uint32_t level, std::uint32_t first,
+                                         std::uint32_t count, std::byte* out)>;
     /// Writes every level of `image`, which was undefined and is then ready to be sampled.
-    /// levels[k] starts with the rows of level k, of mip_extent(width, k) texels in blocks.
-    void write_image(VkImage image, VkExtent2D extent, TexelBlock block,
-                     std::span<const std::span<const std::byte>> levels);
+    void write_image(VkImage image, const ImageSettings& settings, TexelBlock block,
+                     const WriteRows& write_rows);
     /// Waits until the device has done every copy.
     void finish();
 
  private:
-    /// `size` bytes of the staging buffer; its offset there. Flushes when it is full.
-    VkDeviceSize stage(std::span<const std::byte> bytes);
+    /// The offset of `size` bytes of the staging buffer. Flushes when it is full.
+    VkDeviceSize stage(VkDeviceSize size);
     void flush();
 
     const Device& device_;

@@ -25,7 +25,8 @@ class LoadedScene {
         const auto options =
             cw2::parse_options(static_cast<int>(arguments.size()), arguments.data());
         scene_ = std::make_unique<cw2::Scene>(
-            cw2::load_scene(device_, layouts_, path, cw2::texture_settings(*options, device_)));
+            cw2::make_scene(device_, layouts_, cw2::load_scene_file(path),
+                            cw2::texture_settings(*options, device_)));
         settings_ = cw2::frame_settings(
             *options, scene_->bounds(),
             static_cast<float>(extent.width) / static_cast<float>(extent.height));

@@ -1,0 +1,35 @@
+// A baked scene on the host.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+#include "common/io.h"
+#include "cw2/render/camera.h"
+#include "mesh-format/decode.h"
+#include "mesh-format/file.h"
+
+namespace cw2 {
+
+/// A .cw2mesh file: read, checked and decoded. What refers to it stays good when it is moved.
+struct SceneFile {
+    std::optional<common::MappedFile> mapped;
+    std::vector<std::byte> bytes;  ///< of a file that is not mapped
+    mesh_format::Document document;
+    mesh_format::DecodedGeometry decoded;
+    std::vector<glm::vec3> positions;  ///< of all vertices, mesh after mesh
+    Bounds bounds;                     ///< refers to the positions
+    SceneStart start;
+};
+
+/// Throws common::FileError or mesh_format::FormatError.
+SceneFile load_scene_file(const std::filesystem::path& path);
+
+/// The same for a file that somebody may be writing: mapped bytes that are cut off would end the
+/// process, so these are read.
+SceneFile reload_scene_file(const std::filesystem::path& path);
+
+}  // namespace cw2

@@ -1,0 +1,136 @@
+#include "cw2/render/texel_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <vector>
+
+#include "mesh-format/blocks.h"
+
+namespace cw2 {
+
+namespace {
+
+using mesh_format::kNoTexture;
+using mesh_format::MapUse;
+using mesh_format::TextureFormat;
+using mesh_format::TextureRecord;
+
+constexpr std::uint32_t kBlock = 4;
+
+/// Of a level of a texture, where `row` of its rows of blocks begins.
+const std::byte* stored_row(const mesh_format::Document& document, const TextureRecord& record,
+                            std::uint32_t level, std::uint32_t row, std::size_t row_bytes) {
+    std::uint64_t offset = record.offset;
+    for (std::uint32_t i = 0; i < level; ++i)
+        offset += mesh_format::mip_bytes(record.format, record.width, record.height, i);
+    return document.texels.data() + offset + row * row_bytes;
+}
+
+std::size_t row_bytes(const TextureRecord& record, std::uint32_t level) {
+    const std::uint32_t width = mesh_format::mip_extent(record.width, level);
+    return std::size_t{mesh_format::block_count(record.format, width)} *
+           mesh_format::block_bytes(record.format);
+}
+
+bool in_blocks(const TextureRecord& record) {
+    return mesh_format::block_extent(record.format) > 1;
+}
+
+/// One channel or two of a map, four rows at a time.
+class MapRows {
+ public:
+    MapRows(const mesh_format::Document& document, std::uint32_t texture, std::uint32_t level)
+        : document_(document), texture_(texture), level_(level) {
+        if (texture == kNoTexture) return;
+        const TextureRecord& record = document.textures[texture];
+        pitch_ = std::size_t{mesh_format::mip_extent(record.width, level)} *
+                 (in_blocks(record) ? mesh_format::decoded_texel_bytes(record.format)
+                                    : mesh_format::block_bytes(record.format));
+        texels_.resize(kBlock * pitch_);
+    }
+    void read(std::uint32_t first, std::uint32_t count) {
+        if (texture_ == kNoTexture) return;
+        const Rows rows{level_, first, count, texels_.data(), pitch_};
+        in_blocks(document_.textures[texture_]) ? decode_rows(document_, texture_, rows)
+                                                : copy_rows(document_, texture_, rows);
+    }
+    /// Null where there is no such map.
+    const std::byte* row(std::uint32_t y) const {
+        return texture_ == kNoTexture ? nullptr : texels_.data() + y * pitch_;
+    }
+
+ private:
+    const mesh_format::Document& document_;
+    std::uint32_t texture_;
+    std::uint32_t level_;
+    std::size_t pitch_ = 0;
+    std::vector<std::byte> texels_;
+};
+
+}  // namespace
+
+void copy_rows(const mesh_format::Document& document, std::uint32_t texture, const Rows& rows) {
+    const TextureRecord& record = document.textures[texture];
+    const std::size_t bytes = row_bytes(record, rows.level);
+    const std::byte* from = stored_row(document, record, rows.level, rows.first, bytes);
+    for (std::uint32_t y = 0; y < rows.count; ++y)
+        std::memcpy(rows.out + y * rows.pitch, from + y * bytes, bytes);
+}
+
+void decode_rows(const mesh_format::Document& document, std::uint32_t texture, const Rows& rows) {
+    const TextureRecord& record = document.textures[texture];
+    const std::size_t bytes = row_bytes(record, rows.level);
+    const std::uint32_t width = mesh_format::mip_extent(record.width, rows.level);
+    const std::byte* blocks = stored_row(document, record, rows.level, rows.first / kBlock, bytes);
+    for (std::uint32_t y = 0; y < rows.count; y += kBlock, blocks += bytes)
+        mesh_format::decode_block_row(record.format, blocks, width,
+                                      std::min(rows.count - y, kBlock), rows.out + y * rows.pitch,
+                                      rows.pitch);
+}
+
+std::optional<MergedMaps> merged_maps(const mesh_format::Document& document,
+                                      const mesh_format::MaterialRecord& material) {
+    const MergedMaps maps{material.textures[MapUse::normal], material.textures[MapUse::roughness],
+                          material.textures[MapUse::metalness]};
+    if (maps.normal == kNoTexture || (maps.roughness == kNoTexture && maps.metalness == kNoTexture))
+        return std::nullopt;
+    const TextureRecord& normal = document.textures[maps.normal];
+    if (normal.format != TextureFormat::bc5_unorm) return std::nullopt;
+    for (const std::uint32_t other : {maps.roughness, maps.metalness}) {
+        if (other == kNoTexture) continue;
+        const TextureRecord& record = document.textures[other];
+        if (record.width != normal.width || record.height != normal.height ||
+            record.flags != normal.flags)
+            return std::nullopt;
+    }
+    return maps;
+}
+
+void merge_rows(const mesh_format::Document& document, const MergedMaps& maps, const Rows& rows) {
+    const std::uint32_t width =
+        mesh_format::mip_extent(document.textures[maps.normal].width, rows.level);
+    MapRows normal(document, maps.normal, rows.level);
+    std::array<MapRows, 2> scalars{MapRows(document, maps.roughness, rows.level),
+                                   MapRows(document, maps.metalness, rows.level)};
+    for (std::uint32_t y = 0; y < rows.count; y += kBlock) {
+        const std::uint32_t count = std::min(rows.count - y, kBlock);
+        normal.read(rows.first + y, count);
+        for (MapRows& map : scalars) map.read(rows.first + y, count);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            constexpr std::byte kOne{255};
+            std::byte* out = rows.out + (y + i) * rows.pitch;
+            const std::byte* const xy = normal.row(i);
+            const std::byte* const roughness = scalars[0].row(i);
+            const std::byte* const metalness = scalars[1].row(i);
+            for (std::size_t x = 0; x < width; ++x, out += 4) {
+                out[0] = xy[2 * x];
+                out[1] = xy[2 * x + 1];
+                out[2] = roughness ? roughness[x] : kOne;
+                out[3] = metalness ? metalness[x] : kOne;
+            }
+        }
+    }
+}
+
+}  // namespace cw2

@@ -1,0 +1,48 @@
+// Rows of textures as a device keeps them: as they are stored, without their blocks, or merged.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "mesh-format/file.h"
+
+namespace cw2 {
+
+/// Rows of a level, of texels, or of blocks where the image has some, and where they go.
+struct Rows {
+    std::uint32_t level;  ///< of the stored texture
+    std::uint32_t first;
+    std::uint32_t count;
+    std::byte* out;
+    std::size_t pitch;  ///< bytes from a row to the next
+};
+
+/// As they are stored.
+void copy_rows(const mesh_format::Document& document, std::uint32_t texture, const Rows& rows);
+
+/// Texels as mesh_format::decode_block_row() leaves them. The first row is a multiple of 4, and so
+/// is the count unless the level ends with them.
+void decode_rows(const mesh_format::Document& document, std::uint32_t texture, const Rows& rows);
+
+/// Maps that a fragment reads one by one, in one image: for devices on which every read counts.
+/// Textures of a material whose texels lie at the same places: indices into the document's, or
+/// mesh_format::kNoTexture for one of roughness and metalness.
+struct MergedMaps {
+    std::uint32_t normal;
+    std::uint32_t roughness;
+    std::uint32_t metalness;
+    auto operator<=>(const MergedMaps&) const = default;
+};
+
+/// Nothing where the maps differ in size or in what happens at their borders, where there is
+/// nothing to merge, or where the normals are not two-channel ones.
+std::optional<MergedMaps> merged_maps(const mesh_format::Document& document,
+                                      const mesh_format::MaterialRecord& material);
+
+/// 8 bits a channel: x and y of the normal, roughness, metalness; 255 for what is absent. Rows as
+/// of decode_rows().
+void merge_rows(const mesh_format::Document& document, const MergedMaps& maps, const Rows& rows);
+
+}  // namespace cw2
