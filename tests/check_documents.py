@@ -72,33 +72,56 @@ def make_model(folder):
     (folder / "model.obj").write_text(text)
 
 
+def install_library(build, folder):
+    """The library of a build, as it is installed, in a folder of `folder`."""
+    prefix = pathlib.Path(folder) / "prefix"
+    subprocess.run(["cmake", "--install", build, "--prefix", prefix, "--component", "library"],
+                   check=True, stdout=subprocess.DEVNULL)
+    return prefix
+
+
+def environment(build, prefix, home):
+    """What commands of a page run in: the programs of a build, the library in `prefix`, no display."""
+    variables = dict(os.environ, PATH=f"{build}/bin:{os.environ['PATH']}", HOME=home,
+                     XDG_CACHE_HOME=home, CMAKE_PREFIX_PATH=str(prefix),
+                     PKG_CONFIG_PATH=f"{prefix}/lib/pkgconfig")
+    variables.pop("DISPLAY", None)
+    return variables
+
+
+def write_files(page, folder):
+    for block in blocks_of(page):
+        if block.kind == "file":
+            path = folder / block.value
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(block.text)
+
+
+def run_commands(page, folder, variables):
+    """Runs the page's commands up to the first that fails; returns whether one did."""
+    make_model(folder)
+    write_files(page, folder)
+    for block in blocks_of(page):
+        if block.language != "sh" or block.kind is not None:
+            continue
+        outcome = subprocess.run(["bash", "-euo", "pipefail", "-c", block.text], cwd=folder,
+                                 env=variables, stdin=subprocess.DEVNULL, text=True,
+                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        if outcome.returncode != 0:
+            print(f"{page}:{block.line}: status {outcome.returncode}\n{outcome.stdout}")
+            return True
+    return False
+
+
 def run(build, lavapipe, pages):
     failed = False
     with tempfile.TemporaryDirectory() as home:
-        prefix = pathlib.Path(home) / "prefix"
-        subprocess.run(["cmake", "--install", build, "--prefix", prefix, "--component", "library"],
-                       check=True, stdout=subprocess.DEVNULL)
-        environment = dict(os.environ, PATH=f"{build}/bin:{os.environ['PATH']}", HOME=home,
-                           XDG_CACHE_HOME=home, CMAKE_PREFIX_PATH=str(prefix),
-                           PKG_CONFIG_PATH=f"{prefix}/lib/pkgconfig", VK_DRIVER_FILES=lavapipe)
-        environment.pop("DISPLAY", None)
+        variables = environment(build, install_library(build, home), home)
+        variables["VK_DRIVER_FILES"] = lavapipe
         for page in map(pathlib.Path, pages):
             folder = pathlib.Path(home) / page.stem
             folder.mkdir()
-            make_model(folder)
-            for block in blocks_of(page):
-                if block.kind == "file":
-                    path = folder / block.value
-                    path.parent.mkdir(parents=True, exist_ok=True)
-                    path.write_text(block.text)
-                elif block.language == "sh" and block.kind is None:
-                    outcome = subprocess.run(["bash", "-euo", "pipefail", "-c", block.text], cwd=folder,
-                                             env=environment, stdin=subprocess.DEVNULL, text=True,
-                                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-                    if outcome.returncode != 0:
-                        print(f"{page}:{block.line}: status {outcome.returncode}\n{outcome.stdout}")
-                        failed = True
-                        break
+            failed = run_commands(page, folder, variables) or failed
     return failed
 
 
