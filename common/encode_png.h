@@ -1,4 +1,4 @@
-// Texels to a PNG file in memory. A library of its own: it needs libpng.
+// Texels to a PNG file in memory. It needs zlib.
 #pragma once
 
 #include <cstddef>

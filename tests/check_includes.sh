@@ -16,7 +16,7 @@ cw2      | vulkan render options window
 # their own folder and of lower ones
 rules='
 common/*                | common/*
-common/encode_png.*     | png.h
+common/encode_png.*     | zlib.h
 mesh-format/*           | mesh-format/*
 mesh-format/tangent_frame.cpp | common/every_cpu.h
 mesh-format/frame_rotation.h | common/every_cpu.h
