@@ -19,7 +19,10 @@
 #include "cw2/render/picker.h"
 #include "cw2/render/pipelines.h"
 #include "cw2/render/scene.h"
+#include "cw2/render/scene_file.h"
+#include "cw2/render/touched_levels.h"
 #include "cw2/source_bake.h"
+#include "cw2/vulkan/device.h"
 #include "cw2/vulkan/resources.h"
 
 namespace cw2 {
@@ -32,6 +35,10 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+std::uint32_t samples_of(const Options& options) {
+    return options.samples.value_or(kSamples);
+}
+
 /// What draws a picture, and a buffer to read it back.
 class OffscreenTarget {
  public:
@@ -40,7 +47,7 @@ class OffscreenTarget {
         : device_(device),
           extent_{options.size.width, options.size.height},
           kind_(kind),
-          samples_(options.samples.value_or(kSamples)),
+          samples_(samples_of(options)),
           bytes_{.srgb = options.encoding == Encoding::srgb, .straight_alpha = !options.background},
           averager_(device, layouts, built_in_shaders(), 1),
           pixels_(make_buffer(device,
@@ -48,6 +55,13 @@ class OffscreenTarget {
                               VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::readback)),
           pool_(make_command_pool(device)),
           commands_(allocate_commands(device, pool_.get())) {}
+
+    /// Has the device compile what pictures of the scene will need, and waits for it.
+    void rehearse(const Scene& scene, const FrameSettings& settings) {
+        begin_commands(commands_);
+        averager_.rehearse(commands_, 0, scene, settings, extent_);
+        submit_and_wait(device_, commands_);
+    }
 
     /// Renders one picture and waits for it. Calls `sampled` with the number of its frames that are
     /// done.
@@ -220,18 +234,17 @@ struct Studio {
 
 /// What a picture shows at the options' instant, as a file of this kind, if it is for one.
 FrameSettings settings_for(std::optional<ImageKind> kind, const Options& options,
-                           const Scene& scene) {
+                           const SceneStart& start, const Bounds& bounds) {
     const float aspect =
         static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
-    FrameSettings settings =
-        frame_settings(completed(options, scene.start(), scene.bounds()), scene.bounds(), aspect);
+    FrameSettings settings = frame_settings(completed(options, start, bounds), bounds, aspect);
     if (kind == ImageKind::exr) {
         // It holds the values themselves.
         settings.exposure = 0.0f;
         settings.false_color.reset();
     }
     settings.light.position =
-        orbit(settings.light.position, scene.bounds().center, options.time, options.orbit_axis);
+        orbit(settings.light.position, bounds.center, options.time, options.orbit_axis);
     return settings;
 }
 
@@ -251,45 +264,90 @@ void print_pixel(const Device& device, const Layouts& layouts, const Scene& scen
                  const Options& options) {
     Picker picker(device, layouts, built_in_shaders());
     const glm::uvec2 pixel(options.pixel->x, options.pixel->y);
-    const std::optional<Pick> pick = picker.pick(scene, settings_for(std::nullopt, options, scene),
-                                                 {options.size.width, options.size.height}, pixel);
+    const std::optional<Pick> pick =
+        picker.pick(scene, settings_for(std::nullopt, options, scene.start(), scene.bounds()),
+                    {options.size.width, options.size.height}, pixel);
     fmt::print("{}",
                json_of(pixel, pick, pick ? scene.material_names()[pick->material] : std::string()));
 }
 
-}  // namespace
+/// The cameras of all pictures of a run.
+std::vector<Camera> cameras_of(const Options& options, const FrameSettings& settings,
+                               const Bounds& bounds) {
+    if (!options.frames) return {settings.camera};
+    const FrameRange& range = *options.frames;
+    std::vector<Camera> cameras;
+    for (std::uint32_t frame = range.first; frame <= range.last; ++frame)
+        cameras.push_back(at_frame(settings, options.orbit.value_or(Orbit::camera), frame,
+                                   range.count, bounds, options.orbit_axis)
+                              .camera);
+    return cameras;
+}
 
-void render_headless(const Device& device, const Options& options) {
-    require_size(options, device);
-    if (options.output) require_writable(options);
-    // Made now, so that no picture is there without the statistics that were asked for.
-    std::optional<common::OutputFile> stats;
-    if (options.stats) stats.emplace(*options.stats);
-
-    const std::unique_ptr<SourceBake> bake = bake_of(options, device, tell_user);
-    if (bake) wait_for(*bake);
-
-    Timings timings;
-    Clock::time_point start = Clock::now();
+/// Returns the statistics of what was drawn, empty for no picture.
+std::string render(const Device& device, const Options& options, SceneFile file, Timings timings) {
+    const Clock::time_point start = Clock::now();
+    const std::optional<ImageKind> kind =
+        options.output ? image_kind(*options.output) : std::nullopt;
+    const FrameSettings settings = settings_for(kind, options, file.start, file.bounds);
+    const TextureSettings textures = texture_settings(options, device);
     const Layouts layouts(device);
-    const Scene scene =
-        make_scene(device, layouts, load_scene_file(bake ? bake->baked() : options.scene),
-                   texture_settings(options, device));
-    timings.load = milliseconds_since(start);
+    Scene scene(device, layouts, file, textures,
+                first_touched_levels(file, cameras_of(options, settings, file.bounds),
+                                     {.extent = {options.size.width, options.size.height},
+                                      .lod_bias = pixel_sample(0, samples_of(options)).lod_bias,
+                                      .anisotropy = textures.anisotropy}));
+    std::optional<OffscreenTarget> target;
+    std::future<void> rehearsal;
+    if (kind) {
+        target.emplace(device, layouts, options, *kind);
+        // On CPUs shaders are compiled when they first draw: beside the decoding of textures.
+        if (device.is_cpu())
+            rehearsal = std::async(std::launch::async, [&] { target->rehearse(scene, settings); });
+    }
+    scene.write_textures(device, file);
+    file = {};
+    if (rehearsal.valid()) rehearsal.get();
+    timings.load += milliseconds_since(start);
 
     if (options.pixel) print_pixel(device, layouts, scene, options);
-    if (!options.output) return;
-    const ImageKind kind = image_kind(*options.output).value();
-    const FrameSettings settings = settings_for(kind, options, scene);
-    OffscreenTarget target(device, layouts, options, kind);
-    Studio studio{options, scene, target, timings};
+    if (!kind) return {};
+    Studio studio{options, scene, *target, timings};
     options.frames ? studio.draw_turn(settings) : studio.draw_picture(settings);
     if (options.bench_frames > 0) studio.measure(settings);
-    if (stats) {
-        const std::string text = stats_of(device, scene, timings);
-        stats->write(std::as_bytes(std::span(text)));
-        stats->commit();
+    return stats_of(device, scene, timings);
+}
+
+}  // namespace
+
+int render_headless(const Options& options) {
+    // The file is read while the driver is.
+    std::future<SceneFile> loading;
+    const auto load = [](const std::filesystem::path& path) {
+        return std::async(std::launch::async, [path] { return load_scene_file(path); });
+    };
+    if (!is_source(options.scene)) loading = load(options.scene);
+    const Instance instance(options.validation, {});
+    {
+        const Device device(instance, options.device);
+        require_size(options, device);
+        if (options.output) require_writable(options);
+        // Made now, so that no picture is there without the statistics that were asked for.
+        std::optional<common::OutputFile> stats;
+        if (options.stats) stats.emplace(*options.stats);
+
+        const std::unique_ptr<SourceBake> bake = bake_of(options, device, tell_user);
+        if (bake) wait_for(*bake);
+        const Clock::time_point start = Clock::now();
+        SceneFile file = bake ? load_scene_file(bake->baked()) : loading.get();
+        Timings timings{.load = milliseconds_since(start)};
+        const std::string text = render(device, options, std::move(file), std::move(timings));
+        if (stats && !text.empty()) {
+            stats->write(std::as_bytes(std::span(text)));
+            stats->commit();
+        }
     }
+    return instance.validation_messages() == 0 ? 0 : 1;
 }
 
 }  // namespace cw2

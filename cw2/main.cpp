@@ -29,15 +29,9 @@ int run(const cw2::Options& options) {
         return cw2::run_window(options, CW2_SOURCE_DIR);
     }
 
+    if (!options.list_devices) return cw2::render_headless(options);
     const cw2::Instance instance(options.validation, {});
-    if (options.list_devices) {
-        for (const std::string& line : cw2::describe_devices(instance)) std::puts(line.c_str());
-        return 0;
-    }
-    {
-        const cw2::Device device(instance, options.device);
-        cw2::render_headless(device, options);
-    }
+    for (const std::string& line : cw2::describe_devices(instance)) std::puts(line.c_str());
     return instance.validation_messages() == 0 ? 0 : 1;
 }
 

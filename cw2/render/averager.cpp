@@ -141,25 +141,44 @@ void Averager::dispatch(VkCommandBuffer commands, VkPipeline pipeline,
     vkCmdDispatch(commands, groups(extent_.width), groups(extent_.height), 1);
 }
 
+void Averager::record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
+                      const FrameSettings& settings, const PixelSample& sample, bool rehearses) {
+    renderer_.record(commands, slot, scene,
+                     {.image = frame_.handle.get(),
+                      .view = frame_.view.get(),
+                      .extent = extent_,
+                      .available_at = kComputed.stages,
+                      .after = kComputed,
+                      .sample = sample,
+                      .rehearses = rehearses},
+                     settings);
+}
+
+void Averager::add_to_mean(VkCommandBuffer commands, const interop::AverageConstants& constants) {
+    // Earlier contents go where a mean starts; their readers have to be done all the same.
+    ImageUse before = mean_use_;
+    if (constants.starts) before.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    image_barrier(commands, mean_.handle.get(), VK_IMAGE_ASPECT_COLOR_BIT, before, kComputed);
+    mean_use_ = kComputed;
+    dispatch(commands, add_.get(), constants);
+}
+
 void Averager::add(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
                    const FrameSettings& settings, VkExtent2D extent, std::uint32_t index,
                    std::uint32_t count, bool clamps) {
     fit(extent);
-    renderer_.record(commands, slot, scene,
-                     {.image = frame_.handle.get(),
-                      .view = frame_.view.get(),
-                      .extent = extent,
-                      .available_at = kComputed.stages,
-                      .after = kComputed,
-                      .sample = pixel_sample(index, count)},
-                     settings);
-    // Earlier contents go where a mean starts; their readers have to be done all the same.
-    ImageUse before = mean_use_;
-    if (index == 0) before.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    image_barrier(commands, mean_.handle.get(), VK_IMAGE_ASPECT_COLOR_BIT, before, kComputed);
-    mean_use_ = kComputed;
-    dispatch(commands, add_.get(),
-             {.weight = 1.0f / static_cast<float>(count), .starts = index == 0, .clamps = clamps});
+    record(commands, slot, scene, settings, pixel_sample(index, count), false);
+    add_to_mean(
+        commands,
+        {.weight = 1.0f / static_cast<float>(count), .starts = index == 0, .clamps = clamps});
+}
+
+void Averager::rehearse(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
+                        const FrameSettings& settings, VkExtent2D extent) {
+    fit(extent);
+    record(commands, slot, scene, settings, {}, true);
+    add_to_mean(commands, {.weight = 1.0f, .starts = true});
+    encode(commands, {});
 }
 
 VkImage Averager::encode(VkCommandBuffer commands, const PictureBytes& form) {

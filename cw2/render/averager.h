@@ -35,6 +35,11 @@ class Averager {
              const FrameSettings& settings, VkExtent2D extent, std::uint32_t index,
              std::uint32_t count, bool clamps);
 
+    /// Records what has a device compile what pictures of the scene will need, without reading its
+    /// textures; see FrameTarget::rehearses. What there is of a mean is lost.
+    void rehearse(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
+                  const FrameSettings& settings, VkExtent2D extent);
+
     /// Records the making of the mean's bytes; the image, R8G8B8A8_UNORM, is then ready to be
     /// copied from.
     VkImage encode(VkCommandBuffer commands, const PictureBytes& form);
@@ -48,6 +53,9 @@ class Averager {
 
  private:
     void fit(VkExtent2D extent);
+    void record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
+                const FrameSettings& settings, const PixelSample& sample, bool rehearses);
+    void add_to_mean(VkCommandBuffer commands, const interop::AverageConstants& constants);
     void dispatch(VkCommandBuffer commands, VkPipeline pipeline,
                   const interop::AverageConstants& constants) const;
 

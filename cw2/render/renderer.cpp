@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 #include "cw2/render/visibility.h"
 
@@ -295,17 +296,26 @@ void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set,
             }
             const interop::DrawConstants constants = draw_constants(draw, settings.materials);
             vkCmdPushConstants(commands, layout, kConstantsStages, 0, sizeof constants, &constants);
-            vkCmdSetCullMode(commands, draw.cull_back ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE);
+            vkCmdSetCullMode(commands, rehearses_       ? VK_CULL_MODE_FRONT_AND_BACK
+                                       : draw.cull_back ? VK_CULL_MODE_BACK_BIT
+                                                        : VK_CULL_MODE_NONE);
             const VkBuffer vertices = scene.vertices();
             vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &draw.vertex_offset);
             vkCmdBindIndexBuffer(commands, scene.indices(), draw.index_offset,
                                  VK_INDEX_TYPE_UINT16);
             bound_draw = &draw;
         }
-        vkCmdDrawIndexed(commands, chunk.index_count, 1, chunk.first_index, 0, 0);
+        vkCmdDrawIndexed(commands, rehearses_ ? 3 : chunk.index_count, 1, chunk.first_index, 0, 0);
         counts_.triangles += chunk.index_count / 3;
         ++counts_.draws;
     }
+}
+
+void Renderer::leave_one_chunk_per_material(const Scene& scene) {
+    std::set<VkDescriptorSet> materials;
+    std::erase_if(visible_, [&](std::uint32_t index) {
+        return !materials.insert(scene.draws()[scene.chunks()[index].draw].material).second;
+    });
 }
 
 void Renderer::write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 stage,
@@ -323,6 +333,8 @@ void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene&
     find_visible(scene.chunks(), scene.draws(),
                  clip_from_picture(area_of(target), target.extent) * uniforms.projCam,
                  settings.camera.position, visible_);
+    rehearses_ = target.rehearses;
+    if (rehearses_) leave_one_chunk_per_material(scene);
     if (timestamps_) vkCmdResetQueryPool(commands, timestamps_.get(), 2 * slot, 2);
     write_timestamp(commands, VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, 2 * slot);
     begin_attachments(commands, target, settings);

@@ -31,6 +31,9 @@ struct FrameTarget {
     ImageUse after;                               ///< what it is used for next
     std::optional<VkRect2D> area = std::nullopt;  ///< that is drawn; none: all of it
     PixelSample sample{};
+    /// Nothing is seen: a triangle for each material is drawn and culled, so that a device that
+    /// compiles shaders when they first draw does it. Reads no texture.
+    bool rehearses = false;
 };
 
 /// What is left of a scene after culling.
@@ -81,6 +84,7 @@ class Renderer {
                     const FrameTarget& target, const FrameSettings& settings);
     void draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
                       const Side& side, const FrameSettings& settings);
+    void leave_one_chunk_per_material(const Scene& scene);
     void write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 stage,
                          std::uint32_t query) const;
 
@@ -92,6 +96,7 @@ class Renderer {
     std::vector<Slot> slots_;
     QueryPool timestamps_;                ///< two a slot; empty where the device has none
     std::vector<std::uint32_t> visible_;  ///< chunks of the frame at hand
+    bool rehearses_ = false;              ///< the frame at hand, see FrameTarget
     FrameCounts counts_;
     VkExtent2D extent_{};
     Image depth_;

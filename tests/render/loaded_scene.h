@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -15,18 +16,20 @@
 #include "cw2/render/scene.h"
 #include "cw2/vulkan/device.h"
 
-/// With the settings that words of the command line say; validation messages are failures.
+/// With the settings that words of the command line say, and all levels of its textures from those
+/// that are named on; validation messages are failures.
 class LoadedScene {
  public:
     LoadedScene(const std::filesystem::path& path, const std::vector<std::string>& words,
-                VkExtent2D extent) {
+                VkExtent2D extent, const std::vector<std::uint32_t>& first_levels = {}) {
         std::vector<const char*> arguments{"cw2", path.c_str(), "--output", "ignored.exr"};
         for (const std::string& word : words) arguments.push_back(word.c_str());
         const auto options =
             cw2::parse_options(static_cast<int>(arguments.size()), arguments.data());
+        cw2::SceneFile file = cw2::load_scene_file(path);
         scene_ = std::make_unique<cw2::Scene>(
-            cw2::make_scene(device_, layouts_, cw2::load_scene_file(path),
-                            cw2::texture_settings(*options, device_)));
+            device_, layouts_, file, cw2::texture_settings(*options, device_), first_levels);
+        scene_->write_textures(device_, file);
         settings_ = cw2::frame_settings(
             *options, scene_->bounds(),
             static_cast<float>(extent.width) / static_cast<float>(extent.height));

@@ -9,11 +9,15 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <numeric>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "cw2/render/averager.h"
+#include "cw2/render/scene_file.h"
+#include "cw2/render/touched_levels.h"
 #include "tests/render/drawing.h"
 #include "tests/render/loaded_scene.h"
 #include "tests/render/srgb_truth.h"
@@ -79,8 +83,9 @@ TEST(PixelSamples, LieInTheirPixelNoTwoInOneRowOrColumn) {
 /// Draws single frames and means of the scene on a device of its own.
 class Frames : public LoadedScene {
  public:
-    Frames(const std::filesystem::path& path, const Words& words)
-        : LoadedScene(path, words, kExtent) {}
+    Frames(const std::filesystem::path& path, const Words& words,
+           const std::vector<std::uint32_t>& first_levels = {})
+        : LoadedScene(path, words, kExtent, first_levels) {}
 
     /// One sample a pixel, without any averaging.
     std::vector<float> frame(const cw2::PixelSample& sample) {
@@ -258,6 +263,76 @@ TEST_F(Samples, LinearPngsHoldTheValues) {
             }
         }
     }
+}
+
+/// A floor to the horizon, and triangles that stand, lie and lean, near and far, with UVs turned,
+/// sheared and stretched; noise of 512 and of 1024 x 256 texels.
+std::filesystem::path noisy_scene(const std::filesystem::path& folder) {
+    std::mt19937 random(7);
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution(low, high)(random);
+    };
+    const auto noise = [&](int width, int height, const char* name) {
+        write_picture(folder / name, painted(width, height, 3, [&](int, int) {
+                          return std::vector{between(0, 1), between(0, 1), between(0, 1)};
+                      }));
+    };
+    noise(512, 512, "square.png");
+    noise(1024, 256, "wide.png");
+    std::ofstream(folder / "noise.mtl") << "newmtl square\nmap_Kd square.png\n"
+                                           "newmtl wide\nmap_Kd wide.png\nmap_Pr square.png\n";
+    std::string obj =
+        "mtllib noise.mtl\nusemtl square\nv -90 0 -90\nv 90 0 -90\nv 90 0 90\nv -90 0 90\n"
+        "vt 0 0\nvt 40 0\nvt 40 40\nvt 0 40\nf 1/1 2/2 3/3 4/4\n";
+    for (int i = 0; i < 60; ++i) {
+        const double x = between(-9, 9), z = between(-9, 9), scale = std::exp(between(-2, 2));
+        obj += i % 2 ? "usemtl square\n" : "usemtl wide\n";
+        for (int k = 0; k < 3; ++k) {
+            obj += fmt::format("v {:.4f} {:.4f} {:.4f}\nvt {:.4f} {:.4f}\n", x + between(-1, 1),
+                               between(0, 3), z + between(-1, 1), scale * between(-1, 1),
+                               scale * between(-1, 1));
+        }
+        obj += "f -3/-3 -2/-2 -1/-1\n";
+    }
+    std::ofstream(folder / "noise.obj") << obj;
+    return bake_scene(folder / "noise.obj", {"--textures", "lossless"});
+}
+
+float farthest(const std::vector<float>& a, const std::vector<float>& b) {
+    return std::transform_reduce(
+        a.begin(), a.end(), b.begin(), 0.0f, [](float x, float y) { return std::max(x, y); },
+        [](float x, float y) { return std::abs(x - y); });
+}
+
+TEST(TouchedLevels, GiveTheSamePictureAsAll) {
+    const TemporaryFolder folder;
+    const std::filesystem::path scene = noisy_scene(folder.path());
+    std::size_t left_out = 0, changed_without_more = 0;
+    for (const char* camera : {"0,0.3,0", "6,1.6,0.2", "-9,4,-7", "0,30,1", "40,0.02,3", "2,1,2"}) {
+        for (const std::uint32_t count : {1u, 16u}) {
+            const Words words{"--camera-position", camera,      "--camera-target",
+                              "1,0.4,-0.5",        "--samples", std::to_string(count),
+                              "--ambient",         "1,1,1"};
+            const cw2::SceneFile file = cw2::load_scene_file(scene);
+            Frames all(scene, words);
+            const std::vector<float> truth = all.mean(count, false);
+            std::vector<std::uint32_t> first = cw2::first_touched_levels(
+                file, {&all.settings().camera, 1},
+                {{kWidth, kHeight}, cw2::pixel_sample(0, count).lod_bias, 1.0f});
+            // The level between two levels is rounded when it is computed.
+            EXPECT_LE(farthest(Frames(scene, words, first).mean(count, false), truth), 1e-6f)
+                << camera << ", " << count << " samples";
+            for (std::uint32_t& level : first) {
+                left_out += level;
+                level = std::min(level + 3, 7u);
+            }
+            changed_without_more +=
+                farthest(Frames(scene, words, first).mean(count, false), truth) > 0.01f;
+        }
+    }
+    // The bound is of use: it leaves levels out, and three more are missed from nearly everywhere.
+    EXPECT_GE(left_out, 12u);
+    EXPECT_GE(changed_without_more, 9u);
 }
 
 }  // namespace
