@@ -8,6 +8,7 @@ import itertools
 import math
 import pathlib
 import random
+import re
 import struct
 import subprocess
 import sys
@@ -55,6 +56,45 @@ def write_scene(folder):
 
 def put_checksum(data, start, end, at):
     data[at:at + 8] = read_cw2mesh.checksum(data[start:end]).to_bytes(8, "little")
+
+
+PAGE = (ROOT / "docs" / "format.md").read_text()
+TYPES = {"u8": "B", "u32": "I", "u64": "Q", "i32": "i", "f32": "f", "f64": "d"}
+
+
+class Page(unittest.TestCase):
+    """docs/format.md says what the reader does."""
+
+    def test_every_field_of_every_record(self):
+        records = dict(re.findall(r"^### (\w+), \d+ bytes\n(.*?)(?=^#)", PAGE, flags=re.M | re.S))
+        sizes = {name: int(size) for name, size in re.findall(r"^### (\w+), (\d+) bytes", PAGE, flags=re.M)}
+        for name, size in sizes.items():
+            record = getattr(read_cw2mesh, name.replace("Record", "").upper())
+            self.assertEqual(record.struct.size, size, name)
+            at, fields = 0, []
+            for field, form in record.fields:
+                fields.append((str(at), form.replace("c", "B"), field))
+                at += struct.calcsize("<" + form)
+            rows = re.findall(r"^\| (\d+) \| (\w+)(?:\[(\d)\])? \| (\w+) \|", records[name], flags=re.M)
+            self.assertEqual([(at, count + TYPES[kind], field) for at, kind, count, field in rows], fields)
+        self.assertEqual(len(sizes), 8)
+
+    def test_lists(self):
+        sections = re.findall(r"^\| (\d+) (\w+(?: \w+)?) \| (?!is)", PAGE, flags=re.M)[:12]
+        self.assertEqual([name.replace(" ", "_") for _, name in sections], list(read_cw2mesh.SECTIONS))
+        forms = re.findall(r"\| (\d) (\w+) \| (\d+) \|", PAGE)
+        self.assertEqual([name for _, name, _ in forms],
+                         [*read_cw2mesh.POSITION_FORMS, *read_cw2mesh.FRAME_FORMS,
+                          *read_cw2mesh.UV_FORMS, *read_cw2mesh.COLOR_FORMS])
+        formats = re.findall(r"^\| (\d) (\w+_(?:unorm|srgb)) \|", PAGE, flags=re.M)
+        self.assertEqual([(int(number), name) for number, name in formats],
+                         list(enumerate(form[0] for form in read_cw2mesh.FORMATS)))
+        self.assertIn(f"Format version {read_cw2mesh.VERSION}.", PAGE)
+        self.assertIn(f"| version | {read_cw2mesh.VERSION} |", PAGE)
+
+    def test_checksums(self):
+        for size, value in ((0, "none"), (40, "0, 1, 2 ... 39"), (43, "0, 1, 2 ... 42")):
+            self.assertIn(f"| {value} | {read_cw2mesh.checksum(bytes(range(size))):#018x} |", PAGE)
 
 
 class Reader(unittest.TestCase):
