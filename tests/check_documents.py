@@ -5,7 +5,7 @@ Usage: check_documents.py links ROOT                   every link of every page 
        check_documents.py run BUILD LAVAPIPE PAGE...   every command works
 
 A page's ```sh blocks run one after the other in one folder, as a reader would type them: with the
-programs of BUILD in PATH, the library installed, and the model of make_model() there. A comment of
+programs of BUILD in PATH, the library installed, docs/ in PYTHONPATH, and the model of make_model() there. A comment of
 the page before a block says otherwise: `<!-- file: NAME -->` makes it a file of that folder,
 `<!-- not run: REASON -->` leaves it out.
 """
@@ -19,6 +19,7 @@ import sys
 import tempfile
 import zlib
 
+DOCS = pathlib.Path(__file__).resolve().parents[1] / "docs"
 MARK = re.compile(r"<!-- (file|not run): (.+) -->")
 
 
@@ -84,7 +85,8 @@ def environment(build, prefix, home):
     """What commands of a page run in: the programs of a build, the library in `prefix`, no display."""
     variables = dict(os.environ, PATH=f"{build}/bin:{os.environ['PATH']}", HOME=home,
                      XDG_CACHE_HOME=home, CMAKE_PREFIX_PATH=str(prefix),
-                     PKG_CONFIG_PATH=f"{prefix}/lib/pkgconfig")
+                     PKG_CONFIG_PATH=f"{prefix}/lib/pkgconfig", PYTHONPATH=str(DOCS),
+                     PYTHONDONTWRITEBYTECODE="1")
     variables.pop("DISPLAY", None)
     return variables
 
