@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 namespace common {
 
@@ -21,7 +22,11 @@ ProgressBar::ProgressBar(bool enabled)
     : enabled_(enabled && ::isatty(STDERR_FILENO) != 0), next_draw_(Clock::now() + kPatience) {}
 
 ProgressBar::~ProgressBar() {
-    if (drawn_) std::fputs("\r\033[K", stderr);
+    erase();
+}
+
+void ProgressBar::erase() {
+    if (std::exchange(drawn_, false)) std::fputs("\r\033[K", stderr);
 }
 
 void ProgressBar::update(double done, std::string_view what) {

@@ -18,6 +18,8 @@ class ProgressBar {
 
     /// `done` in [0, 1]; `what` is at work.
     void update(double done, std::string_view what);
+    /// Takes it away for a line of other text; the next update() draws it again.
+    void erase();
 
  private:
     using Clock = std::chrono::steady_clock;

@@ -78,7 +78,11 @@ TextureSet make_textures(const Settings& settings, const SourceScene& scene, con
         return {.textures = {}, .materials = std::vector<MaterialTextures>(scene.materials.size())};
     }
     common::ProgressBar bar(!settings.quiet);
-    return bake_textures(scene.materials, settings.textures, settings.output, warn,
+    const auto warn_without_bar = [&](const std::string& warning) {
+        bar.erase();
+        warn(warning);
+    };
+    return bake_textures(scene.materials, settings.textures, settings.output, warn_without_bar,
                          [&bar](double done, std::string_view name) { bar.update(done, name); });
 }
 
@@ -228,64 +232,44 @@ void write_stats(const Settings& settings, const BakeStats& stats) {
     file.commit();
 }
 
-}  // namespace
-
-std::string export_baked(const Settings& settings, const Warn& warn) {
-    if (!is_gltf(settings.output))
-        throw BakeError(settings.input.string() + ": is baked already; -o FILE.glb exports it");
-    refuse_overwriting(settings, {settings.input});
-    const std::string rule =
-        settings.depfile ? depfile_text(settings.output, {settings.input}) : "";
-    const common::MappedFile file(settings.input);
-    const std::string name = settings.input.string();
-    mesh_format::Document document = mesh_format::parse(file.bytes(), name);
-    const mesh_format::DecodedGeometry decoded = decode(document, name);
-    std::vector<std::span<const std::byte>> payloads;
-    for (const TextureRecord& texture : document.textures)
-        payloads.push_back(document.payload(texture));
-    const std::uint64_t bytes = write_export(document, payloads, settings, warn);
-    if (settings.depfile) write_depfile(*settings.depfile, rule);
-    return fmt::format("{}\n{}", settings.output.string(), export_summary(document, bytes));
-}
-
 /// The geometry stays one scene from stage to stage, and no stage copies attributes: welding makes
 /// equal corners equal in index; framing makes vertices, which name their attributes; chunks and
 /// meshes name vertices; packing reads each vertex's values once and writes its final bytes. Within
 /// a stage, tasks run over blocks of positions, over halves of halves of a material's triangles, or
 /// over blocks of vertices, so that one large mesh fills all cores as well as many small ones.
-std::string bake(const Settings& settings, const Warn& warn) {
+std::string run_stages(const Settings& settings, const Warn& warn, StageClock& clock) {
     const std::size_t threads = settings.threads > 0 ? static_cast<std::size_t>(settings.threads)
                                                      : std::thread::hardware_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     std::max<std::size_t>(threads, 1));
 
-    StageClock clock;
+    clock.begin("read");
     SourceScene scene = read_scene(settings.input, warn);
     const std::vector<std::filesystem::path> inputs = input_files(scene, settings);
     refuse_overwriting(settings, inputs);
     const std::string rule = settings.depfile ? depfile_text(settings.output, inputs) : "";
-    clock.end("read");
+    clock.begin("normals");
     if (settings.z_up) turn_z_up(scene);
     generate_normals(scene);
-    clock.end("normals");
+    clock.begin("textures");
     const TextureSet textures = make_textures(settings, scene, warn);
     if (is_gltf(settings.input)) warn_of_blending(scene.materials, textures.materials, warn);
-    clock.end("textures");
+    clock.begin("weld");
     const std::vector<UvBudget> budgets = uv_budgets(textures);
     weld(scene);
-    clock.end("weld");
+    clock.begin("tangents");
     const FramedTriangles framed = add_tangents(scene);
     std::vector<Corner>().swap(scene.corners);  // now in the framed triangles
-    clock.end("tangents");
+    clock.begin("chunks");
     const FramedScene framed_scene{scene, framed};
     const ChunkedScene chunked = make_chunks(framed_scene, budgets);
-    clock.end("chunks");
+    clock.begin("pack");
     PackedGeometry geometry =
         quantise(framed_scene, chunked, budgets, {settings.frame_form, settings.position_form});
     check_extent(geometry.scene, scene, settings.input);
     add_start(scene, geometry.scene);
     const Tables tables = make_tables(scene.materials, textures);
-    clock.end("pack");
+    clock.begin("write");
 
     mesh_format::Document document{.scene = geometry.scene,
                                    .meshes = geometry.meshes,
@@ -306,7 +290,7 @@ std::string bake(const Settings& settings, const Warn& warn) {
     const bool exports = is_gltf(settings.output);
     const std::uint64_t bytes = exports ? write_export(document, tables.payloads, settings, warn)
                                         : write_baked(document, tables.payloads, settings.output);
-    clock.end("write");
+    clock.begin("statistics");
     if (settings.depfile) write_depfile(*settings.depfile, rule);
     if (settings.stats)
         write_stats(settings,
@@ -315,6 +299,36 @@ std::string bake(const Settings& settings, const Warn& warn) {
         return fmt::format("{}\n{}", settings.output.string(), export_summary(document, bytes));
     return fmt::format("{}\n{}{}", settings.output.string(), summary(document, bytes),
                        taken_over(textures));
+}
+
+}  // namespace
+
+std::string export_baked(const Settings& settings, const Warn& warn) {
+    if (!is_gltf(settings.output))
+        throw BakeError(settings.input.string() + ": is baked already; -o FILE.glb exports it");
+    refuse_overwriting(settings, {settings.input});
+    const std::string rule =
+        settings.depfile ? depfile_text(settings.output, {settings.input}) : "";
+    const common::MappedFile file(settings.input);
+    const std::string name = settings.input.string();
+    mesh_format::Document document = mesh_format::parse(file.bytes(), name);
+    const mesh_format::DecodedGeometry decoded = decode(document, name);
+    std::vector<std::span<const std::byte>> payloads;
+    for (const TextureRecord& texture : document.textures)
+        payloads.push_back(document.payload(texture));
+    const std::uint64_t bytes = write_export(document, payloads, settings, warn);
+    if (settings.depfile) write_depfile(*settings.depfile, rule);
+    return fmt::format("{}\n{}", settings.output.string(), export_summary(document, bytes));
+}
+
+std::string bake(const Settings& settings, const Warn& warn) {
+    StageClock clock;
+    try {
+        return run_stages(settings, warn, clock);
+    } catch (const std::bad_alloc&) {
+        throw BakeError(fmt::format("{}: there is not enough memory for the stage '{}'",
+                                    settings.input.string(), clock.at_work()));
+    }
 }
 
 }  // namespace bake

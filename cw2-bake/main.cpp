@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/io.h"
+#include "common/signals.h"
 #include "cw2-bake/bake.h"
 #include "cw2-bake/inspection.h"
 #include "cw2-bake/settings.h"
@@ -24,23 +25,23 @@ void inspect(const bake::Settings& settings) {
     const std::string text = settings.json ? bake::inspection_json(document, file.bytes().size())
                                            : settings.input.string() + '\n' +
                                                  bake::inspection(document, file.bytes().size());
-    std::fputs(text.c_str(), stdout);
+    common::print(text);
 }
 
 void run(const bake::Settings& settings) {
-    if (settings.inspect) return inspect(settings);
     const auto warn = [&](const std::string& warning) {
         if (settings.strict) throw bake::BakeError(warning);
         if (!settings.quiet) tell("warning: " + warning);
     };
-    std::string summary;
     try {
-        summary =
+        if (settings.inspect) return inspect(settings);
+        const std::string summary =
             settings.is_baked ? bake::export_baked(settings, warn) : bake::bake(settings, warn);
+        if (!settings.quiet) common::print(summary);
     } catch (const std::bad_alloc&) {
-        throw bake::BakeError(settings.input.string() + ": there is not enough memory to bake it");
+        throw bake::BakeError(settings.input.string() + ": there is not enough memory to " +
+                              (settings.inspect ? "inspect it" : "export it"));
     }
-    if (!settings.quiet) std::fputs(summary.c_str(), stdout);
 }
 
 /// One heap that keeps what it has got: a bake makes large arrays one after the other, and handing
@@ -56,6 +57,7 @@ void keep_memory() {
 
 int main(int argc, char** argv) {
     keep_memory();
+    common::handle_signals("cw2-bake");
     try {
         const auto settings = bake::parse_settings(argc, argv);
         if (settings) run(*settings);

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <map>
+#include <sstream>
 #include <string>
 
 #include "common/file_kind.h"
+#include "common/io.h"
 
 namespace bake {
 
@@ -84,7 +85,9 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {
-        app.exit(success, std::cout, std::cerr);
+        std::ostringstream text;
+        app.exit(success, text, text);
+        common::print(text.str());
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
         throw UsageError(error.what());

@@ -46,9 +46,12 @@ std::uint64_t count_degenerate(const PlainMesh& mesh) {
 
 }  // namespace
 
-void StageClock::end(std::string_view stage) {
+void StageClock::begin(std::string_view stage) {
     const Clock::time_point now = Clock::now();
-    stages_.push_back({stage, std::chrono::duration<double, std::milli>(now - start_).count()});
+    if (!at_work_.empty())
+        stages_.push_back(
+            {at_work_, std::chrono::duration<double, std::milli>(now - start_).count()});
+    at_work_ = stage;
     start_ = now;
 }
 

@@ -16,19 +16,22 @@ namespace bake {
 /// Takes the time of each stage.
 class StageClock {
  public:
-    /// Ends the stage at work, which began with the last call, and names it.
-    void end(std::string_view stage);
+    /// Ends the stage at work, if there is one, and begins another.
+    void begin(std::string_view stage);
+    std::string_view at_work() const { return at_work_; }
 
     struct Stage {
         std::string_view name;
         double milliseconds;
     };
+    /// Those that have ended.
     std::span<const Stage> stages() const { return stages_; }
 
  private:
     using Clock = std::chrono::steady_clock;
 
-    Clock::time_point start_ = Clock::now();
+    Clock::time_point start_;
+    std::string_view at_work_;
     std::vector<Stage> stages_;
 };
 

@@ -215,8 +215,8 @@ struct Studio {
         saver.finish();
         progress.reset();
         const double milliseconds = milliseconds_since(turn_start);
-        fmt::print("{} frames in {:.1f} s, {:.2f} a second\n", range.size(), 1e-3 * milliseconds,
-                   1e3 * range.size() / milliseconds);
+        common::print(fmt::format("{} frames in {:.1f} s, {:.2f} a second\n", range.size(),
+                                  1e-3 * milliseconds, 1e3 * range.size() / milliseconds));
     }
 
     void measure(const FrameSettings& settings) {
@@ -226,9 +226,9 @@ struct Studio {
             timings.frames.push_back(milliseconds_since(start));
             timings.gpu_frames.push_back(target.gpu_milliseconds());
         }
-        fmt::print("{} frames of {}x{}: median {:.2f} ms, device {:.2f} ms\n", options.bench_frames,
-                   options.size.width, options.size.height, median(timings.frames),
-                   median(timings.gpu_frames));
+        common::print(fmt::format("{} frames of {}x{}: median {:.2f} ms, device {:.2f} ms\n",
+                                  options.bench_frames, options.size.width, options.size.height,
+                                  median(timings.frames), median(timings.gpu_frames)));
     }
 };
 
@@ -267,8 +267,8 @@ void print_pixel(const Device& device, const Layouts& layouts, const Scene& scen
     const std::optional<Pick> pick =
         picker.pick(scene, settings_for(std::nullopt, options, scene.start(), scene.bounds()),
                     {options.size.width, options.size.height}, pixel);
-    fmt::print("{}",
-               json_of(pixel, pick, pick ? scene.material_names()[pick->material] : std::string()));
+    common::print(
+        json_of(pixel, pick, pick ? scene.material_names()[pick->material] : std::string()));
 }
 
 /// The cameras of all pictures of a run.

@@ -52,6 +52,7 @@ SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn) {
     scene.files = file.buffer_files;
     scene.files.insert(scene.files.begin(), path);
     take_camera_and_light(file, nodes, warn, scene);
+    for (const common::MappedFile& mapped : file.mapped) mapped.require_unchanged();
     return scene;
 }
 

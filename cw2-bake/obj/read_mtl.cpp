@@ -413,9 +413,9 @@ std::vector<MtlMaterial> MtlReader::read(const std::function<bool(std::string_vi
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& path,
                                   const std::function<bool(std::string_view)>& wanted,
                                   const Warn& warn) {
-    const common::MappedFile file(path);
-    const std::string_view text = without_padding(
-        without_bom({reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()}));
+    const std::vector<std::byte> bytes = common::read_file(path);
+    const std::string_view text =
+        without_padding(without_bom({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
     return MtlReader(path, text, warn).read(wanted);
 }
 

@@ -309,6 +309,7 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
         if (material.source.name.empty()) material.source.name = "default";
         scene.materials.push_back(std::move(material.source));
     }
+    file.require_unchanged();
     return std::move(scene);
 }
 

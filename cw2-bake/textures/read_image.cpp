@@ -115,7 +115,10 @@ Image read_image(const std::filesystem::path& path) {
     check_regular_file(path);
     try {
         const common::MappedFile file(path);
-        if (auto image = read_common(file.bytes())) return std::move(*image);
+        if (auto image = read_common(file.bytes())) {
+            file.require_unchanged();
+            return std::move(*image);
+        }
     } catch (const common::FileError& error) {
         const std::string prefix = path.string() + ": ";
         const std::string_view line = error.what();

@@ -32,8 +32,7 @@ std::optional<std::string> text_of(const toml::node& node) {
 }  // namespace
 
 std::vector<ConfigEntry> read_config(const std::filesystem::path& path) {
-    const common::MappedFile file(path);
-    const std::span<const std::byte> bytes = file.bytes();
+    const std::vector<std::byte> bytes = common::read_file(path);
     const auto fail = [&](const toml::source_region& place, std::string_view what) {
         throw UsageError(fmt::format("{}:{}: {}", path.string(), place.begin.line, what));
     };

@@ -4,8 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iostream>
 #include <span>
+#include <sstream>
 #include <vector>
 
 #include "common/file_kind.h"
@@ -141,7 +141,9 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {
-        app.exit(success, std::cout, std::cerr);
+        std::ostringstream text;
+        app.exit(success, text, text);
+        common::print(text.str());
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
         throw UsageError(error.what());

@@ -23,8 +23,8 @@ struct GlslangProcess {
 };
 
 std::string read_text(const std::filesystem::path& path) {
-    const common::MappedFile file(path);
-    return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()};
+    const std::vector<std::byte> bytes = common::read_file(path);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// Finds what is included under the root.

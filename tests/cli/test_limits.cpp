@@ -52,6 +52,28 @@ TEST_F(Limits, ALackOfMemorySaysWhatWasRead) {
     EXPECT_EQ(outcome.err, "cw2-bake: many.obj: there is not enough memory to read it\n");
 }
 
+TEST_F(Limits, HoweverLittleMemoryThereIsTheMessageSaysSo) {
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 200'000; ++i)
+        text += "v " + std::to_string(i % 251) + " 1 " + std::to_string(i) + "\nf -1 1 2\n";
+    write("many.obj", text);
+    int lacks = 0;
+    for (int megabytes = 60; megabytes < 180; megabytes += 12) {
+        const std::string limit = "ulimit -v " + std::to_string(megabytes) + "000;";
+        const Outcome outcome = run({"/bin/bash", "-c", limit + "exec \"$0\" \"$@\"", BAKE_PROGRAM,
+                                     "many.obj", "-o", "many.cw2mesh", "--quiet", "--threads", "2"},
+                                    {{}, folder_.path()});
+        EXPECT_LE(outcome.status, 1) << outcome.err;
+        if (outcome.status == 0) continue;
+        ++lacks;
+        EXPECT_TRUE(outcome.err.starts_with("cw2-bake: many.obj: there is not enough memory ") ||
+                    outcome.err.starts_with("cw2-bake: pthread_create has failed"))
+            << outcome.err;
+        EXPECT_FALSE(std::filesystem::exists(here("many.cw2mesh")));
+    }
+    EXPECT_GT(lacks, 2);
+}
+
 TEST_F(Limits, ALackOfMemoryForATextureNamesItsImage) {
     constexpr int kSize = 4000;
     const std::vector<std::byte> texels(std::size_t{3} * kSize * kSize, std::byte{90});

@@ -4,19 +4,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
 #include <stdexcept>
 
 namespace {
 
-using File = std::unique_ptr<FILE, int (*)(FILE*)>;
-
 // A file takes any amount of text, a pipe only what someone reads meanwhile.
-File temporary_file() {
-    File file(std::tmpfile(), std::fclose);
+std::unique_ptr<FILE, int (*)(FILE*)> temporary_file() {
+    std::unique_ptr<FILE, int (*)(FILE*)> file(std::tmpfile(), std::fclose);
     if (!file) throw std::runtime_error(std::string("no temporary file: ") + std::strerror(errno));
     return file;
 }
@@ -50,17 +49,29 @@ std::string contents(FILE* file) {
 
 }  // namespace
 
-Outcome run(const std::vector<std::string>& command, const Surroundings& surroundings) {
-    const File out = temporary_file();
-    const File err = temporary_file();
-    const pid_t child = fork();
-    if (child < 0) throw std::runtime_error(std::string("fork: ") + std::strerror(errno));
-    if (child == 0) become(command, surroundings, out.get(), err.get());
+Running::Running(const std::vector<std::string>& command, const Surroundings& surroundings)
+    : program_(command.front()), out_(temporary_file()), err_(temporary_file()), process_(fork()) {
+    if (process_ < 0) throw std::runtime_error(std::string("fork: ") + std::strerror(errno));
+    if (process_ == 0) become(command, surroundings, out_.get(), err_.get());
+}
+
+Running::~Running() {
+    if (process_ <= 0) return;
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+}
+
+Outcome Running::wait() {
     int status = 0;
-    while (waitpid(child, &status, 0) < 0) {
+    while (waitpid(process_, &status, 0) < 0) {
         if (errno != EINTR) throw std::runtime_error(std::string("waitpid: ") + strerror(errno));
     }
+    process_ = 0;
     const int code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-    if (code == 127) throw std::runtime_error(command.front() + ": cannot be started");
-    return {code, contents(out.get()), contents(err.get())};
+    if (code == 127) throw std::runtime_error(program_ + ": cannot be started");
+    return {code, contents(out_.get()), contents(err_.get())};
+}
+
+Outcome run(const std::vector<std::string>& command, const Surroundings& surroundings) {
+    return Running(command, surroundings).wait();
 }

@@ -1,7 +1,11 @@
 // Programs as a user runs them.
 #pragma once
 
+#include <sys/types.h>
+
+#include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,6 +22,28 @@ struct Surroundings {
     std::filesystem::path folder;          ///< to run in; empty: the caller's
 };
 
-/// Runs `command`, the program's path and its arguments, with no standard input, and waits.
-/// Throws std::runtime_error if it cannot be started.
+/// A program that runs, with no standard input.
+class Running {
+ public:
+    /// `command` is the program's path and its arguments.
+    explicit Running(const std::vector<std::string>& command,
+                     const Surroundings& surroundings = {});
+    /// Kills it, if nobody has waited.
+    ~Running();
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+
+    pid_t process() const { return process_; }
+    /// Waits for its end. Throws std::runtime_error if it could not be started.
+    Outcome wait();
+
+ private:
+    using File = std::unique_ptr<FILE, int (*)(FILE*)>;
+    std::string program_;
+    File out_;
+    File err_;
+    pid_t process_;
+};
+
+/// Runs `command` and waits. Throws std::runtime_error if it cannot be started.
 Outcome run(const std::vector<std::string>& command, const Surroundings& surroundings = {});
