@@ -30,7 +30,7 @@ struct Statements {
     std::string transparency_place;
     /// What is not read and not neutral, by its key, with its place and what a note says.
     struct LeftOut {
-        std::string key, place, kind;
+        std::string key, place, kind, word;
     };
     std::vector<LeftOut> left_out;
 };
@@ -248,8 +248,10 @@ void MtlReader::other_statement(const std::string& key, std::string_view keyword
             material_.left_out.push_back(
                 {"glass", place(), "illum 4 or 9, glass, is not supported and left out"});
         } else if (model && (*model < 0 || *model > 2)) {
-            note("illum 3 to 10, reflections and refraction, are not supported and left out",
-                 fmt::format("{}", *model));
+            material_.left_out.push_back(
+                {*model == 3.0f ? "reflection" : "illum", place(),
+                 "illum 3 to 10, reflections and refraction, are not supported and left out",
+                 fmt::format("{}", *model)});
         }
         return;
     }
@@ -319,12 +321,15 @@ void MtlReader::note_left_out(const Statements& stated) {
     };
     const bool opaque = stated.d.value_or(1.0f) >= 1 && stated.tr.value_or(0.0f) <= 0 &&
                         !stated.map_d && !has("tf");
+    const bool metal = stated.pm.value_or(0.0f) > 0 || stated.map_pm || stated.rma || stated.orm;
     for (const Statements::LeftOut& left : stated.left_out) {
+        // Blender states it of every metal.
+        if (left.key == "reflection" && metal) continue;
         // Maya states glass of everything.
         if (left.key == "glass" && opaque) continue;
         // Blender states a coat's roughness without a coat, too.
         if ((left.key == "pcr" && !has("pc")) || (left.key == "anisor" && !has("aniso"))) continue;
-        notes_.add(left.kind, left.place, "", material_count_);
+        notes_.add(left.kind, left.place, left.word, material_count_);
     }
     // 3ds Max states the colour's image a second time.
     const auto& ambient = stated.map_ka;
@@ -359,8 +364,10 @@ MtlMaterial MtlReader::finish(const Statements& stated) {
     }
     material.metalness = stated.pm.value_or(material.maps[MapUse::metalness] ? 1.0f : 0.0f);
 
-    // Some exporters state Tr upside down; where d is stated too, d is the one to believe.
-    const float opacity = stated.d ? *stated.d : 1.0f - stated.tr.value_or(0.0f);
+    // Some exporters state Tr upside down; where d is stated too, d is the one to believe. Nobody
+    // means what cannot be seen: MeshLab's Tr of 1 is opaque.
+    const float tr = stated.tr.value_or(0.0f);
+    const float opacity = stated.d ? *stated.d : tr < 1 ? 1.0f - tr : 1.0f;
     if (opacity < 1 && !stated.map_d) {
         material.blend = true;
         material.opacity = std::clamp(opacity, 0.0f, 1.0f);
