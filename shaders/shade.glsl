@@ -55,7 +55,7 @@ Surface surface_at_fragment() {
     Surface surface;
     surface.base_color =
         draw.base_color * vertex_color.rgb * texture(base_color_map, uv, display.lod_bias).rgb;
-    const bool has_normal_map = merged_maps != 0 || draw.normal_map != kNormalMapAbsent;
+    const bool has_normal_map = draw.normal_map != kNormalMapAbsent;
     vec4 texel = vec4(0.0);
     if (merged_maps != 0 || (use_normal_map != 0 && has_normal_map))
         texel = texture(normal_map, uv, display.lod_bias);

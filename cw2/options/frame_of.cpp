@@ -78,7 +78,7 @@ TextureSettings texture_settings(const Options& options, const Device& device) {
     // first one is the compiling of their decoders.
     return {.anisotropy = std::min(wanted, device.properties().limits.maxSamplerAnisotropy),
             .decode_blocks = device.is_cpu() || !device.samples_blocks(),
-            .merge_maps = device.is_cpu()};
+            .few_kinds = device.is_cpu()};
 }
 
 }  // namespace cw2

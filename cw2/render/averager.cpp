@@ -11,6 +11,7 @@ namespace cw2 {
 namespace {
 
 constexpr VkFormat kColors = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkExtent2D kOnePixel{1, 1};
 
 /// Both ways, so that what comes next may read and write.
 constexpr ImageUse kComputed{
@@ -128,7 +129,7 @@ void Averager::fit(VkExtent2D extent) {
     extent_ = extent;
 }
 
-void Averager::dispatch(VkCommandBuffer commands, VkPipeline pipeline,
+void Averager::dispatch(VkCommandBuffer commands, VkPipeline pipeline, VkExtent2D extent,
                         const interop::AverageConstants& constants) const {
     const auto groups = [](std::uint32_t pixels) {
         return (pixels + interop::kAverageGroup - 1) / interop::kAverageGroup;
@@ -138,7 +139,7 @@ void Averager::dispatch(VkCommandBuffer commands, VkPipeline pipeline,
                             nullptr);
     vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof constants,
                        &constants);
-    vkCmdDispatch(commands, groups(extent_.width), groups(extent_.height), 1);
+    vkCmdDispatch(commands, groups(extent.width), groups(extent.height), 1);
 }
 
 void Averager::record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
@@ -154,13 +155,14 @@ void Averager::record(VkCommandBuffer commands, std::uint32_t slot, const Scene&
                      settings);
 }
 
-void Averager::add_to_mean(VkCommandBuffer commands, const interop::AverageConstants& constants) {
+void Averager::add_to_mean(VkCommandBuffer commands, VkExtent2D extent,
+                           const interop::AverageConstants& constants) {
     // Earlier contents go where a mean starts; their readers have to be done all the same.
     ImageUse before = mean_use_;
     if (constants.starts) before.layout = VK_IMAGE_LAYOUT_UNDEFINED;
     image_barrier(commands, mean_.handle.get(), VK_IMAGE_ASPECT_COLOR_BIT, before, kComputed);
     mean_use_ = kComputed;
-    dispatch(commands, add_.get(), constants);
+    dispatch(commands, add_.get(), extent, constants);
 }
 
 void Averager::add(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
@@ -169,7 +171,7 @@ void Averager::add(VkCommandBuffer commands, std::uint32_t slot, const Scene& sc
     fit(extent);
     record(commands, slot, scene, settings, pixel_sample(index, count), false);
     add_to_mean(
-        commands,
+        commands, extent,
         {.weight = 1.0f / static_cast<float>(count), .starts = index == 0, .clamps = clamps});
 }
 
@@ -177,16 +179,20 @@ void Averager::rehearse(VkCommandBuffer commands, std::uint32_t slot, const Scen
                         const FrameSettings& settings, VkExtent2D extent) {
     fit(extent);
     record(commands, slot, scene, settings, {}, true);
-    add_to_mean(commands, {.weight = 1.0f, .starts = true});
-    encode(commands, {});
+    add_to_mean(commands, kOnePixel, {.weight = 1.0f, .starts = true});
+    encode(commands, {}, kOnePixel);
 }
 
 VkImage Averager::encode(VkCommandBuffer commands, const PictureBytes& form) {
+    return encode(commands, form, extent_);
+}
+
+VkImage Averager::encode(VkCommandBuffer commands, const PictureBytes& form, VkExtent2D extent) {
     image_barrier(commands, mean_.handle.get(), VK_IMAGE_ASPECT_COLOR_BIT, mean_use_, kComputed);
     mean_use_ = kComputed;
     image_barrier(commands, bytes_.handle.get(), VK_IMAGE_ASPECT_COLOR_BIT,
                   {VK_IMAGE_LAYOUT_UNDEFINED, kCopied.stages, VK_ACCESS_2_NONE}, kComputed);
-    dispatch(commands, encode_.get(),
+    dispatch(commands, encode_.get(), extent,
              {.divides_by_alpha = form.straight_alpha,
               .encodes_srgb = form.srgb,
               .swaps_red_and_blue = form.blue_green_red});

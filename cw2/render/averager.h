@@ -55,8 +55,11 @@ class Averager {
     void fit(VkExtent2D extent);
     void record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
                 const FrameSettings& settings, const PixelSample& sample, bool rehearses);
-    void add_to_mean(VkCommandBuffer commands, const interop::AverageConstants& constants);
-    void dispatch(VkCommandBuffer commands, VkPipeline pipeline,
+    /// Of the pixels of `extent`, and of some beside them.
+    void add_to_mean(VkCommandBuffer commands, VkExtent2D extent,
+                     const interop::AverageConstants& constants);
+    VkImage encode(VkCommandBuffer commands, const PictureBytes& form, VkExtent2D extent);
+    void dispatch(VkCommandBuffer commands, VkPipeline pipeline, VkExtent2D extent,
                   const interop::AverageConstants& constants) const;
 
     const Device& device_;

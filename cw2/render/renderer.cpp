@@ -232,12 +232,14 @@ void Renderer::begin_attachments(VkCommandBuffer commands, const FrameTarget& ta
                                           .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
                                           .storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
                                           .clearValue = {.depthStencil = {.depth = 0.0f}}};
-    const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                               .renderArea = area_of(target),
-                               .layerCount = 1,
-                               .colorAttachmentCount = 1,
-                               .pColorAttachments = &color,
-                               .pDepthAttachment = &depth};
+    const VkRenderingInfo info{
+        .sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+        // Nothing is drawn that more would have to be cleared for.
+        .renderArea = target.rehearses ? VkRect2D{{0, 0}, {1, 1}} : area_of(target),
+        .layerCount = 1,
+        .colorAttachmentCount = 1,
+        .pColorAttachments = &color,
+        .pDepthAttachment = &depth};
     vkCmdBeginRendering(commands, &info);
 
     const VkViewport viewport{.width = static_cast<float>(target.extent.width),
@@ -265,7 +267,7 @@ void Renderer::draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, c
     draw(settings, 0, end);
     if (!settings.split) return;
     draw(settings.split->right, end, target.extent.width);
-    draw_divider(commands, end, target.extent);
+    if (!target.rehearses) draw_divider(commands, end, target.extent);
 }
 
 void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,

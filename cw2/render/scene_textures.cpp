@@ -21,8 +21,21 @@ using mesh_format::MapUse;
 using mesh_format::TextureFormat;
 using mesh_format::TextureRecord;
 
-constexpr TextureRecord kWhiteTexel{
-    .format = TextureFormat::rgba8_unorm, .width = 1, .height = 1, .mip_count = 1};
+/// In the formats of what they stand for: so no kind of image is added to the scene's.
+constexpr TextureFormat kWhiteFormats[] = {TextureFormat::rgba8_srgb, TextureFormat::r8_unorm,
+                                           TextureFormat::rgba8_unorm};
+
+std::size_t white_for(MapUse use) {
+    switch (use) {
+        case MapUse::base_color:
+        case MapUse::emission:
+            return 0;
+        case MapUse::normal:
+            return 2;
+        default:
+            return 1;
+    }
+}
 
 VkFormat vulkan_format(TextureFormat format, bool decoded) {
     switch (format) {
@@ -90,32 +103,42 @@ SceneTextures::SceneTextures(const Device& device, const Document& document,
                              const TextureSettings& settings,
                              const std::vector<std::uint32_t>& first_levels)
     : settings_(settings),
-      textures_(document.textures.size() + 1),
+      textures_(document.textures.size() + std::size(kWhiteFormats)),
       merged_of_material_(document.materials.size()),
       repeat_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, settings.anisotropy)),
       clamp_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, settings.anisotropy)) {
     std::set<std::uint32_t> needed;
-    if (settings.merge_maps) needed = merge_maps(document);
+    if (settings.few_kinds) needed = merge_maps(document);
     const auto first_level = [&](std::uint32_t texture) {
-        return texture == kNoTexture || first_levels.empty() ? 0 : first_levels[texture];
+        return first_levels.empty() ? 0 : first_levels[texture];
     };
     for (std::uint32_t i = 0; i < document.textures.size(); ++i) {
-        if (settings.merge_maps && !needed.contains(i)) continue;
+        if (settings.few_kinds && !needed.contains(i)) continue;
         textures_[i].stored = i;
         textures_[i].first_level = first_level(i);
         textures_[i].record = without_levels(document.textures[i], first_level(i));
     }
-    textures_[document.textures.size()].record = kWhiteTexel;
+    for (std::size_t i = 0; i < std::size(kWhiteFormats); ++i) {
+        textures_[document.textures.size() + i].record = {
+            .format = kWhiteFormats[i], .width = 1, .height = 1, .mip_count = 1};
+    }
     for (Texture& texture : textures_) {
         if (!texture.merged) continue;
-        texture.first_level = first_level(texture.merged->normal);
-        for (const std::uint32_t other : {texture.merged->roughness, texture.merged->metalness}) {
-            if (other != kNoTexture)
-                texture.first_level = std::min(texture.first_level, first_level(other));
+        const TextureRecord record = record_of(document, *texture.merged);
+        texture.first_level = record.mip_count;
+        for (const std::uint32_t map :
+             {texture.merged->normal, texture.merged->roughness, texture.merged->metalness}) {
+            if (map != kNoTexture && document.textures[map].mip_count == record.mip_count)
+                texture.first_level = std::min(texture.first_level, first_level(map));
         }
-        texture.record =
-            without_levels(document.textures[texture.merged->normal], texture.first_level);
-        texture.record.format = TextureFormat::rgba8_unorm;
+        if (texture.first_level == record.mip_count) texture.first_level = 0;
+        texture.record = without_levels(record, texture.first_level);
+    }
+    for (Texture& texture : textures_) {
+        TextureRecord& record = texture.record;
+        texture.is_one_texel = record.width == 1 && record.height == 1;
+        if (texture.is_one_texel && settings.few_kinds)
+            record.width = record.height = record.mip_count = 2;
     }
     make_images(device, document);
 }
@@ -163,13 +186,12 @@ void SceneTextures::make_images(const Device& device, const Document& document) 
         texture.image = make_image_handle(device, settings);
         images[settings.host_writes].push_back(texture.image.get());
         textures[settings.host_writes].push_back(&texture);
-        const auto name = [&](const char* kind, std::uint32_t stored) {
-            return fmt::format("{} {}", kind, document.text(document.textures[stored].name));
-        };
-        device.name(texture.image.get(),
-                    texture.merged                 ? name("merged texture", texture.merged->normal)
-                    : texture.stored == kNoTexture ? "white texel"
-                                                   : name("texture", texture.stored));
+        device.name(
+            texture.image.get(),
+            texture.merged ? "merged maps"
+            : texture.stored == kNoTexture
+                ? "white"
+                : fmt::format("texture {}", document.text(document.textures[texture.stored].name)));
     }
     for (const bool host_writes : {false, true}) {
         if (images[host_writes].empty()) continue;
@@ -193,29 +215,53 @@ void SceneTextures::make_images(const Device& device, const Document& document) 
     if (!images[true].empty()) begin_writing(device, images[true]);
 }
 
-/// `rows` counts levels from the image's first one.
+/// Rows of the stored level.
 void SceneTextures::write_rows(const Document& document, const Texture& texture,
                                const Rows& rows) const {
+    if (texture.merged) {
+        merge_rows(document, *texture.merged, rows);
+    } else if (texture.stored == kNoTexture) {
+        std::memset(rows.out, 255, mesh_format::block_bytes(texture.record.format));
+    } else if (is_decoded(texture)) {
+        decode_rows(document, texture.stored, rows);
+    } else {
+        copy_rows(document, texture.stored, rows);
+    }
+}
+
+/// Rows of a level of the image, on threads.
+void SceneTextures::write_level(const Document& document, const Texture& texture,
+                                const Rows& rows) const {
+    if (texture.is_one_texel) {
+        std::array<std::byte, 16> texel;
+        write_rows(document, texture, {0, 0, 1, texel.data(), texel.size()});
+        const std::size_t bytes = texel_block(texture).bytes;
+        const std::uint32_t width = mesh_format::mip_extent(texture.record.width, rows.level);
+        for (std::uint32_t y = 0; y < rows.count; ++y) {
+            for (std::uint32_t x = 0; x < width; ++x)
+                std::memcpy(rows.out + y * rows.pitch + x * bytes, texel.data(), bytes);
+        }
+        return;
+    }
     constexpr std::size_t kBytesAtOnce = 64u << 10;
-    const auto groups = [](std::size_t rows_) { return (rows_ + 3) / 4; };
     using Range = tbb::blocked_range<std::size_t>;
-    tbb::parallel_for(Range(0, groups(rows.count), kBytesAtOnce / (4 * rows.pitch) + 1),
-                      [&](const Range& range) {
-                          const auto first = static_cast<std::uint32_t>(4 * range.begin());
-                          const auto end = static_cast<std::uint32_t>(4 * range.end());
-                          const Rows part{rows.level + texture.first_level, rows.first + first,
-                                          std::min(end, rows.count) - first,
-                                          rows.out + first * rows.pitch, rows.pitch};
-                          if (texture.merged) {
-                              merge_rows(document, *texture.merged, part);
-                          } else if (texture.stored == kNoTexture) {
-                              std::memset(part.out, 255, 4);
-                          } else if (is_decoded(texture)) {
-                              decode_rows(document, texture.stored, part);
-                          } else {
-                              copy_rows(document, texture.stored, part);
-                          }
-                      });
+    const std::size_t groups = (std::size_t{rows.count} + 3) / 4;
+    tbb::parallel_for(
+        Range(0, groups, kBytesAtOnce / (4 * rows.pitch) + 1), [&](const Range& range) {
+            const auto first = static_cast<std::uint32_t>(4 * range.begin());
+            const auto end = static_cast<std::uint32_t>(4 * range.end());
+            write_rows(
+                document, texture,
+                {rows.level + texture.first_level, rows.first + first,
+                 std::min(end, rows.count) - first, rows.out + first * rows.pitch, rows.pitch});
+        });
+}
+
+TexelBlock SceneTextures::texel_block(const Texture& texture) const {
+    const TextureFormat format = texture.record.format;
+    return is_decoded(texture)
+               ? TexelBlock{1, mesh_format::decoded_texel_bytes(format)}
+               : TexelBlock{mesh_format::block_extent(format), mesh_format::block_bytes(format)};
 }
 
 void SceneTextures::write(const Device& device, const Document& document) const {
@@ -223,10 +269,7 @@ void SceneTextures::write(const Device& device, const Document& document) const 
     for (const Texture& texture : textures_) {
         if (!texture.image) continue;
         const TextureRecord& record = texture.record;
-        const TexelBlock block =
-            is_decoded(texture) ? TexelBlock{1, mesh_format::decoded_texel_bytes(record.format)}
-                                : TexelBlock{mesh_format::block_extent(record.format),
-                                             mesh_format::block_bytes(record.format)};
+        const TexelBlock block = texel_block(texture);
         const auto row_count = [&](std::uint32_t level) {
             return (mesh_format::mip_extent(record.height, level) + block.extent - 1) /
                    block.extent;
@@ -234,7 +277,7 @@ void SceneTextures::write(const Device& device, const Document& document) const 
         if (texture.address) {
             for (std::uint32_t level = 0; level < record.mip_count; ++level) {
                 const LevelPlace place = level_place(device, texture.image.get(), level);
-                write_rows(
+                write_level(
                     document, texture,
                     {level, 0, row_count(level), texture.address + place.offset, place.pitch});
             }
@@ -247,7 +290,7 @@ void SceneTextures::write(const Device& device, const Document& document) const 
                 const std::uint32_t width = mesh_format::mip_extent(record.width, level);
                 const std::size_t pitch =
                     std::size_t{(width + block.extent - 1) / block.extent} * block.bytes;
-                write_rows(document, texture, {level, first, count, out, pitch});
+                write_level(document, texture, {level, first, count, out, pitch});
             });
     }
     if (uploader) uploader->finish();
@@ -255,13 +298,13 @@ void SceneTextures::write(const Device& device, const Document& document) const 
 
 VkDescriptorImageInfo SceneTextures::descriptor(const Document& document, std::size_t material,
                                                 MapUse use) const {
-    const std::size_t merged = merged_of_material_[material];
-    const bool is_part = merged != 0 && is_merged(use);
-    const std::uint32_t index = document.materials[material].textures[use];
-    const Texture& texture = textures_[is_part               ? merged
-                                       : index == kNoTexture ? document.textures.size()
-                                                             : index];
-    const ImageView& view = is_part && use != MapUse::normal
+    const std::size_t merged = is_merged(use) ? merged_of_material_[material] : 0;
+    const std::uint32_t stored = document.materials[material].textures[use];
+    const Texture& texture =
+        textures_[merged != 0            ? merged
+                  : stored == kNoTexture ? document.textures.size() + white_for(use)
+                                         : stored];
+    const ImageView& view = merged != 0 && use != MapUse::normal
                                 ? texture.scalar_views[use == MapUse::metalness]
                                 : texture.view;
     const bool clamps = (texture.record.flags & mesh_format::kClampToEdge) != 0;

@@ -22,7 +22,9 @@ namespace cw2 {
 struct TextureSettings {
     float anisotropy = 1.0f;     ///< the samplers' largest ratio, 1 for none
     bool decode_blocks = false;  ///< what is stored in blocks becomes single texels
-    bool merge_maps = false;     ///< normal, roughness and metalness in one image; needs the other
+    /// For devices on which every read counts, and which compile shaders for every kind of image:
+    /// normal, roughness and metalness in one image, and none of a single texel. Needs the other.
+    bool few_kinds = false;
 };
 
 class SceneTextures {
@@ -38,7 +40,7 @@ class SceneTextures {
 
     /// Whether the normal map of a material holds roughness and metalness, too.
     bool has_merged_maps(std::size_t material) const { return merged_of_material_[material] != 0; }
-    /// What `use` of a material is sampled from; a white texel where it has no such map.
+    /// What `use` of a material is sampled from; white where it has no such map.
     VkDescriptorImageInfo descriptor(const mesh_format::Document& document, std::size_t material,
                                      mesh_format::MapUse use) const;
     /// Device memory.
@@ -51,6 +53,7 @@ class SceneTextures {
         std::optional<MergedMaps> merged;     ///< that it holds
         mesh_format::TextureRecord record{};  ///< of the image
         std::uint32_t first_level = 0;        ///< of the stored ones, the image's level 0
+        bool is_one_texel = false;            ///< stored so; in the image it may be more
         ImageHandle image;
         ImageView view;
         std::array<ImageView, 2> scalar_views{};  ///< of merged maps: roughness, metalness
@@ -60,13 +63,17 @@ class SceneTextures {
     std::set<std::uint32_t> merge_maps(const mesh_format::Document& document);
     ImageSettings settings_of(const Device& device, const Texture& texture) const;
     bool is_decoded(const Texture& texture) const;
+    TexelBlock texel_block(const Texture& texture) const;
     void make_images(const Device& device, const mesh_format::Document& document);
+    void write_level(const mesh_format::Document& document, const Texture& texture,
+                     const Rows& rows) const;
     void write_rows(const mesh_format::Document& document, const Texture& texture,
                     const Rows& rows) const;
 
     TextureSettings settings_;
     std::vector<Memory> memory_;
-    /// The document's, without an image where none is needed; a white texel; merged maps.
+    /// The document's, without an image where none is needed; white ones for maps that are absent,
+    /// one for each format; merged maps.
     std::vector<Texture> textures_;
     std::vector<std::size_t> merged_of_material_;  ///< index of textures_, 0 where there is none
     Sampler repeat_;

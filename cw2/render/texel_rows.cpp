@@ -37,30 +37,44 @@ bool in_blocks(const TextureRecord& record) {
     return mesh_format::block_extent(record.format) > 1;
 }
 
-/// One channel or two of a map, four rows at a time.
+bool is_one_texel(const TextureRecord& record) {
+    return record.width == 1 && record.height == 1;
+}
+
+/// One channel or two of a map, four rows at a time; a map of one texel has it everywhere.
 class MapRows {
  public:
-    MapRows(const mesh_format::Document& document, std::uint32_t texture, std::uint32_t level)
+    MapRows(const mesh_format::Document& document, std::uint32_t texture, std::uint32_t level,
+            std::uint32_t width)
         : document_(document), texture_(texture), level_(level) {
         if (texture == kNoTexture) return;
         const TextureRecord& record = document.textures[texture];
-        pitch_ = std::size_t{mesh_format::mip_extent(record.width, level)} *
-                 (in_blocks(record) ? mesh_format::decoded_texel_bytes(record.format)
-                                    : mesh_format::block_bytes(record.format));
+        const std::size_t texel = in_blocks(record)
+                                      ? mesh_format::decoded_texel_bytes(record.format)
+                                      : mesh_format::block_bytes(record.format);
+        pitch_ = width * texel;
         texels_.resize(kBlock * pitch_);
+        if (!is_one_texel(record)) return;
+        level_ = 0;
+        read_rows(0, 1);
+        for (std::size_t i = texel; i < texels_.size(); ++i) texels_[i] = texels_[i - texel];
+        texture_ = kNoTexture;  // all is read
     }
     void read(std::uint32_t first, std::uint32_t count) {
-        if (texture_ == kNoTexture) return;
+        if (texture_ != kNoTexture) read_rows(first, count);
+    }
+    /// Null where there is no such map.
+    const std::byte* row(std::uint32_t y) const {
+        return texels_.empty() ? nullptr : texels_.data() + y * pitch_;
+    }
+
+ private:
+    void read_rows(std::uint32_t first, std::uint32_t count) {
         const Rows rows{level_, first, count, texels_.data(), pitch_};
         in_blocks(document_.textures[texture_]) ? decode_rows(document_, texture_, rows)
                                                 : copy_rows(document_, texture_, rows);
     }
-    /// Null where there is no such map.
-    const std::byte* row(std::uint32_t y) const {
-        return texture_ == kNoTexture ? nullptr : texels_.data() + y * pitch_;
-    }
 
- private:
     const mesh_format::Document& document_;
     std::uint32_t texture_;
     std::uint32_t level_;
@@ -93,26 +107,37 @@ std::optional<MergedMaps> merged_maps(const mesh_format::Document& document,
                                       const mesh_format::MaterialRecord& material) {
     const MergedMaps maps{material.textures[MapUse::normal], material.textures[MapUse::roughness],
                           material.textures[MapUse::metalness]};
-    if (maps.normal == kNoTexture || (maps.roughness == kNoTexture && maps.metalness == kNoTexture))
+    if (maps.normal != kNoTexture &&
+        document.textures[maps.normal].format != TextureFormat::bc5_unorm)
         return std::nullopt;
-    const TextureRecord& normal = document.textures[maps.normal];
-    if (normal.format != TextureFormat::bc5_unorm) return std::nullopt;
-    for (const std::uint32_t other : {maps.roughness, maps.metalness}) {
-        if (other == kNoTexture) continue;
-        const TextureRecord& record = document.textures[other];
-        if (record.width != normal.width || record.height != normal.height ||
-            record.flags != normal.flags)
+    const TextureRecord whole = record_of(document, maps);
+    for (const std::uint32_t map : {maps.normal, maps.roughness, maps.metalness}) {
+        if (map == kNoTexture || is_one_texel(document.textures[map])) continue;
+        const TextureRecord& record = document.textures[map];
+        if (record.width != whole.width || record.height != whole.height ||
+            record.flags != whole.flags)
             return std::nullopt;
     }
     return maps;
 }
 
+TextureRecord record_of(const mesh_format::Document& document, const MergedMaps& maps) {
+    TextureRecord whole{.width = 1, .height = 1, .mip_count = 1};
+    for (const std::uint32_t map : {maps.normal, maps.roughness, maps.metalness}) {
+        if (map != kNoTexture && is_one_texel(whole)) whole = document.textures[map];
+    }
+    whole.format = TextureFormat::rgba8_unorm;
+    return whole;
+}
+
 void merge_rows(const mesh_format::Document& document, const MergedMaps& maps, const Rows& rows) {
     const std::uint32_t width =
-        mesh_format::mip_extent(document.textures[maps.normal].width, rows.level);
-    MapRows normal(document, maps.normal, rows.level);
-    std::array<MapRows, 2> scalars{MapRows(document, maps.roughness, rows.level),
-                                   MapRows(document, maps.metalness, rows.level)};
+        mesh_format::mip_extent(record_of(document, maps).width, rows.level);
+    const auto map_rows = [&](std::uint32_t map) {
+        return MapRows(document, map, rows.level, width);
+    };
+    MapRows normal = map_rows(maps.normal);
+    std::array<MapRows, 2> scalars{map_rows(maps.roughness), map_rows(maps.metalness)};
     for (std::uint32_t y = 0; y < rows.count; y += kBlock) {
         const std::uint32_t count = std::min(rows.count - y, kBlock);
         normal.read(rows.first + y, count);
@@ -124,8 +149,8 @@ void merge_rows(const mesh_format::Document& document, const MergedMaps& maps, c
             const std::byte* const roughness = scalars[0].row(i);
             const std::byte* const metalness = scalars[1].row(i);
             for (std::size_t x = 0; x < width; ++x, out += 4) {
-                out[0] = xy[2 * x];
-                out[1] = xy[2 * x + 1];
+                out[0] = xy ? xy[2 * x] : kOne;
+                out[1] = xy ? xy[2 * x + 1] : kOne;
                 out[2] = roughness ? roughness[x] : kOne;
                 out[3] = metalness ? metalness[x] : kOne;
             }

@@ -28,7 +28,7 @@ void decode_rows(const mesh_format::Document& document, std::uint32_t texture, c
 
 /// Maps that a fragment reads one by one, in one image: for devices on which every read counts.
 /// Textures of a material whose texels lie at the same places: indices into the document's, or
-/// mesh_format::kNoTexture for one of roughness and metalness.
+/// mesh_format::kNoTexture.
 struct MergedMaps {
     std::uint32_t normal;
     std::uint32_t roughness;
@@ -36,13 +36,16 @@ struct MergedMaps {
     auto operator<=>(const MergedMaps&) const = default;
 };
 
-/// Nothing where the maps differ in size or in what happens at their borders, where there is
-/// nothing to merge, or where the normals are not two-channel ones.
+/// Nothing where maps of more than a texel differ in size or in what happens at their borders, or
+/// where the normals are not two-channel ones.
 std::optional<MergedMaps> merged_maps(const mesh_format::Document& document,
                                       const mesh_format::MaterialRecord& material);
 
-/// 8 bits a channel: x and y of the normal, roughness, metalness; 255 for what is absent. Rows as
-/// of decode_rows().
+/// What the merged image is as a texture: 8 bits a channel, x and y of the normal, roughness,
+/// metalness; 255 for what is absent.
+mesh_format::TextureRecord record_of(const mesh_format::Document& document, const MergedMaps& maps);
+
+/// Rows as of decode_rows().
 void merge_rows(const mesh_format::Document& document, const MergedMaps& maps, const Rows& rows);
 
 }  // namespace cw2
