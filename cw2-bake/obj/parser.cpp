@@ -1,6 +1,5 @@
 #include "cw2-bake/obj/parser.h"
 
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <limits>
 
 #include "cw2-bake/base/text_lines.h"
+#include "cw2-bake/obj/decimal.h"
 #include "cw2-bake/obj/left_out.h"
 #include "cw2-bake/obj/plain_lines.h"
 
@@ -178,11 +178,12 @@ Found ChunkParser::number(const char*& p, T& value) const {
     if (is_continuation(p)) return Found::line_continues;
     if (is_line_end(*p) || *p == '#') return Found::nothing;
     const char* digits = *p == '+' && p[1] != '-' ? p + 1 : p;
-    const auto [end, error] = fast_float::from_chars(digits, limit_, value);
+    const char* const end = read_decimal(digits, limit_, value);
+    if (!end) return Found::no_number;
     // Microsoft's C library writes 1.#INF, -1.#IND and 1.#QNAN.
     const bool is_special =
         *end == '#' && end[-1] == '.' && std::isalpha(static_cast<unsigned char>(end[1]));
-    if (error != std::errc() || (!ends_word(*end) && !is_special)) return Found::no_number;
+    if (!ends_word(*end) && !is_special) return Found::no_number;
     if (is_special || !std::isfinite(value)) return Found::no_finite_number;
     value += T{0};  // -0 becomes +0
     p = end;

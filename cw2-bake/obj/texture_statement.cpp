@@ -1,6 +1,5 @@
 #include "cw2-bake/obj/texture_statement.h"
 
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "cw2-bake/base/text_lines.h"
+#include "cw2-bake/obj/decimal.h"
 
 namespace bake {
 namespace {
@@ -98,8 +98,7 @@ std::optional<float> as_number(std::string_view word) {
     if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
     float value = 0;
     const char* end = word.data() + word.size();
-    const auto result = fast_float::from_chars(word.data(), end, value);
-    if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+    if (read_decimal(word.data(), end, value) != end) return std::nullopt;
     return value + 0.0f;
 }
 

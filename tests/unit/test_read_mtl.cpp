@@ -319,6 +319,11 @@ TEST_F(ReadMtl, WhatIsNoNumberLeavesTheDefault) {
     EXPECT_TRUE(warnings_.empty());
 }
 
+TEST_F(ReadMtl, ANumberTooSmallForAFloatIsZero) {
+    EXPECT_EQ(material("Kd 1e-50 0.5 -1e-999\n").base_color, glm::vec3(0, 0.5f, 0));
+    EXPECT_TRUE(warnings_.empty());
+}
+
 TEST_F(ReadMtl, NeedsTheFile) {
     EXPECT_THROW(bake::read_mtl(
                      folder_.path() / "no.mtl", [](std::string_view) { return true; },
