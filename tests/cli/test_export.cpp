@@ -86,7 +86,7 @@ TEST_F(Export, NamesThatAreNoUtf8AreValidInJson) {
                                         json.at(textures).at(0).at("name")};
     };
     const std::vector<std::string> names{"gr\uFFFDn", "gr\uFFFDn.png"};
-    EXPECT_NO_THROW(nlohmann::json::parse(read("stats.json")));
+    EXPECT_TRUE(nlohmann::json::accept(read("stats.json")));
     const Outcome inspection = bake({"--inspect", "--json", "gr\xFCn.cw2mesh"});
     EXPECT_EQ(names_of(nlohmann::json::parse(inspection.out), "textures"), names);
     bake_well({"gr\xFCn.cw2mesh", "-o", "gr\xFCn.gltf", "--quiet"});

@@ -30,7 +30,7 @@ std::optional<std::vector<Face>> read_with_peer(const std::string& text) {
         for (std::size_t f = 0; f < shape.mesh.num_face_vertices.size(); ++f) {
             Face face;
             const int material = shape.mesh.material_ids[f];
-            for (int i = 0; i < shape.mesh.num_face_vertices[f]; ++i) {
+            for (unsigned i = 0; i < shape.mesh.num_face_vertices[f]; ++i) {
                 const tinyobj::index_t index = shape.mesh.indices[next++];
                 const auto values = [](const auto& array, int at, int n) {
                     return at < 0 ? std::vector<float>{}
