@@ -41,9 +41,15 @@ timed() {
     printf '%-36s %3d.%02d s\n' "$path" $((centiseconds / 100)) $((centiseconds % 100))
 }
 
-third_party/install_packages.sh
-cmake --preset release >/dev/null
-[[ -t 1 ]] && quiet=() || quiet=(-- --quiet)
+third_party/install_packages.sh --needed
+# On a terminal one sees what is done.
+if [[ -t 1 ]]; then
+    quiet=()
+    cmake --preset release
+else
+    quiet=(-- --quiet)
+    cmake --preset release >/dev/null
+fi
 if [[ $# -eq 1 ]]; then
     cmake --build --preset release --target figures "${quiet[@]}"
     echo "See docs/figures.md and docs/figures/."

@@ -1,59 +1,55 @@
 #!/usr/bin/env bash
-# Installs the packages of packages.txt that are missing. Needs root or sudo only if some are.
-# On anything but Debian 12 it installs nothing: it names what is missing and exits 1.
+# Installs the packages of packages.txt that are missing, where there is apt and it has them. What
+# it cannot install it names, and ends well all the same: CMake tells whether the rest is enough.
+# Usage: install_packages.sh [--needed]    (--needed: neither what is optional nor tests)
 set -euo pipefail
 cd "$(dirname "$0")"
 
-fail() {
+say() {
     echo "install_packages.sh: $*" >&2
-    exit 1
 }
 
-# Prints the packages of the list that dpkg does not hold as installed.
-missing_packages() {
-    local installed
-    installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p')
-    grep -vxF "$installed" <<<"$wanted" || true
-}
+wanted=$(sed -E "$([[ ${1:-} == --needed ]] && echo '/^# optional/,$d;') /^#/d; /^\$/d; s/[[:space:]].*//" packages.txt)
 
-# Prints the packages whose commands cannot be run; the libraries are left to CMakeLists.txt,
-# which names the packages of those that it does not find.
-missing_tools() {
-    local package_and_command
-    for package_and_command in g++:c++ cmake:cmake ninja-build:ninja pkg-config:pkg-config; do
-        command -v "${package_and_command#*:}" >/dev/null || echo "${package_and_command%:*}"
-    done
-}
-
-wanted=$(sed 's/[[:space:]]*#.*//; /^$/d' packages.txt)
-if command -v dpkg-query >/dev/null; then
-    names=$(missing_packages)
-else
-    names=$(missing_tools)
+if ! command -v apt-get >/dev/null; then
+    say "there is no apt here, and nothing is installed; CMake says what it does not find"
+    exit 0
 fi
+installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p')
+names=$(grep -vxF "$installed" <<<"$wanted" || true)
 [[ -n $names ]] || exit 0
 mapfile -t missing <<<"$names"
 
-if ! grep -qsx 'ID=debian' /etc/os-release || ! grep -qsx 'VERSION_ID="12"' /etc/os-release; then
-    fail "this is not Debian 12; missing here, by their names there: ${missing[*]}"
-fi
-
 as_root=()
 if [[ $EUID -ne 0 ]]; then
-    command -v sudo >/dev/null || fail "root or sudo is needed to install: ${missing[*]}"
+    if ! command -v sudo >/dev/null; then
+        say "root or sudo is needed to install: ${missing[*]}"
+        exit 0
+    fi
     as_root=(sudo)
 fi
 
-# Runs apt-get and shows what it prints only if it fails.
+# Runs apt-get: on a terminal it shows what it does, else only if it fails.
 apt_get() {
-    local output
-    output=$("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-        apt-get -qq -o DPkg::Lock::Timeout=300 "$@" </dev/null 2>&1) || {
+    local command=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive
+        apt-get -o DPkg::Lock::Timeout=300 "$@") output
+    if [[ -t 1 ]]; then
+        "${command[@]}" </dev/null && return
+    else
+        output=$("${command[@]}" -qq </dev/null 2>&1) && return
         echo "$output" >&2
-        fail "failed: apt-get $*"
-    }
+    fi
+    say "failed: apt-get $*"
+    exit 1
 }
 
-echo "installing, with what they depend on: ${missing[*]}"
 apt_get update
+# With a candidate to install; of what apt does not know it prints nothing.
+known=$(apt-cache policy "${missing[@]}" |
+    awk '/^[^ ]/ { name = $1; sub(/:$/, "", name) } / Candidate: / && $2 != "(none)" { print name }')
+unknown=$(grep -vxF "$known" <<<"$names" || true)
+[[ -z $unknown ]] || say "apt does not have here:" $unknown
+mapfile -t missing < <(grep -xF "$known" <<<"$names")
+[[ ${#missing[@]} -gt 0 ]] || exit 0
+echo "installing, with what they depend on: ${missing[*]}"
 apt_get install -y --no-install-recommends "${missing[@]}"
