@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <optional>
 
+#include "common/program.h"
 #include "common/srgb.h"
 #include "cw2/vulkan/resources.h"
 
@@ -15,18 +18,28 @@ namespace cw2 {
 
 namespace {
 
-/// Of the package fonts-dejavu-core.
-constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 constexpr float kFontPixels = 14.0f;     // at scale 1
 constexpr float kOwnFontPixels = 13.0f;  // that ImGui's own font is drawn for
+
+/// DejaVu Sans where it comes with the program, else where Debian, Fedora and Arch have it.
+std::optional<std::filesystem::path> font_file() {
+    for (const std::filesystem::path& path :
+         {common::beside_program("../share/cw2/DejaVuSans.ttf"),
+          std::filesystem::path("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"),
+          std::filesystem::path("/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf"),
+          std::filesystem::path("/usr/share/fonts/TTF/DejaVuSans.ttf")}) {
+        if (std::ifstream(path).good()) return path;
+    }
+    return std::nullopt;
+}
 
 /// Letters of the size that the display asks for; ImGui's own where the font is not installed.
 void add_font(float scale) {
     // Latin, Greek and Cyrillic, for the names of files and materials, and punctuation.
     static constexpr ImWchar kLetters[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x2044, 0};
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-    if (std::ifstream(kFont).good()) {
-        fonts.AddFontFromFileTTF(kFont, std::round(kFontPixels * scale), nullptr, kLetters);
+    if (const auto file = font_file()) {
+        fonts.AddFontFromFileTTF(file->c_str(), std::round(kFontPixels * scale), nullptr, kLetters);
         return;
     }
     ImFontConfig own;
@@ -130,6 +143,7 @@ UiPass::Context::~Context() {
 UiPass::UiPass(GLFWwindow* window, const Instance& instance, const Device& device, VkFormat format,
                std::uint32_t slots, float scale)
     : device_(device),
+      window_(window),
       pass_(make_pass(device, format)),
       descriptor_pool_(
           make_descriptor_pool(device, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, 1)),
@@ -160,12 +174,16 @@ UiPass::~UiPass() {
 }
 
 void UiPass::upload_font() const {
+#if IMGUI_VERSION_NUM >= 19000
+    ImGui_ImplVulkan_CreateFontsTexture();
+#else
     const CommandPool pool = make_command_pool(device_);
     const VkCommandBuffer commands = allocate_commands(device_, pool.get());
     begin_commands(commands);
     ImGui_ImplVulkan_CreateFontsTexture(commands);
     submit_and_wait(device_, commands);
     ImGui_ImplVulkan_DestroyFontUploadObjects();
+#endif
 }
 
 void UiPass::begin_frame(const Input& input, bool has_mouse) {
@@ -173,21 +191,9 @@ void UiPass::begin_frame(const Input& input, bool has_mouse) {
     io.ConfigFlags = has_mouse ? ImGuiConfigFlags_None : ImGuiConfigFlags_NoMouse;
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
-    // The backend mixes presses since the last frame with where the cursor went afterwards.
-    std::ranges::copy(input.buttons, io.MouseDown);
-    if (ImGui::IsMousePosValid()) {
-        io.MousePos = {input.cursor.x / io.DisplayFramebufferScale.x,
-                       input.cursor.y / io.DisplayFramebufferScale.y};
-    }
-    // Of a key that is pressed and let go between two frames the backend keeps nothing.
-    for (const int key : short_keys_) io.KeysDown[key] = false;
-    short_keys_.clear();
-    for (const int key : input.keys) {
-        if (key < 0 || io.KeysDown[key]) continue;
-        io.KeysDown[key] = true;
-        short_keys_.push_back(key);
-    }
+    input_.before_frame(window_, input);
     ImGui::NewFrame();
+    input_.after_frame(input);
 }
 
 void UiPass::end_frame() {

@@ -10,6 +10,7 @@
 #include "cw2/vulkan/device.h"
 #include "cw2/vulkan/handle.h"
 #include "cw2/window/input.h"
+#include "cw2/window/ui_input.h"
 
 struct GLFWwindow;
 
@@ -57,11 +58,12 @@ class UiPass {
     void upload_font() const;
 
     const Device& device_;
+    GLFWwindow* window_;
     Context context_;
+    UiInput input_;
     RenderPass pass_;
     DescriptorPool descriptor_pool_;
     std::vector<Framebuffer> framebuffers_;  ///< of each slot
-    std::vector<int> short_keys_;            ///< that were down in the last frame only for us
 };
 
 }  // namespace cw2
