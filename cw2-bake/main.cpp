@@ -8,6 +8,7 @@
 
 #include "common/io.h"
 #include "common/signals.h"
+#include "common/version.h"
 #include "cw2-bake/bake.h"
 #include "cw2-bake/inspection.h"
 #include "cw2-bake/settings.h"
@@ -59,7 +60,7 @@ int main(int argc, char** argv) {
     keep_memory();
     common::handle_signals("cw2-bake");
     try {
-        const auto settings = bake::parse_settings(argc, argv);
+        const auto settings = bake::parse_settings(argc, argv, common::version());
         if (settings) run(*settings);
         return 0;
     } catch (const bake::UsageError& error) {

@@ -33,17 +33,13 @@ void add_choice(CLI::App& app, const std::string& name, T& target,
         ->type_name(form);
 }
 
-}  // namespace
+constexpr const char* kDescription =
+    "Turns a Wavefront OBJ or a glTF 2.0 with its materials and textures into one file for cw2; or "
+    "that file, or any of these, into a glTF.";
 
-std::optional<Settings> parse_settings(int argc, const char* const* argv) {
+void add_options(CLI::App& app, Settings& settings) {
     using mesh_format::FrameForm;
     using mesh_format::PositionForm;
-    Settings settings;
-    CLI::App app(
-        "Turns a Wavefront OBJ or a glTF 2.0 with its materials and textures into one file for "
-        "cw2; or that file, or any of these, into a glTF.",
-        "cw2-bake");
-    app.set_version_flag("--version", "cw2-bake " CW2_VERSION);
     app.add_option("INPUT", settings.input,
                    "scene to bake (.obj, .gltf, .glb), or a baked file to export or inspect")
         ->required()
@@ -82,6 +78,16 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     app.add_flag("--quiet", settings.quiet, "print errors only");
     app.add_flag("--inspect", settings.inspect, "print what is in a baked file");
     app.add_flag("--json", settings.json, "with --inspect: print JSON");
+}
+
+}  // namespace
+
+std::optional<Settings> parse_settings(int argc, const char* const* argv,
+                                       const std::string& version) {
+    Settings settings;
+    CLI::App app(kDescription, "cw2-bake");
+    app.set_version_flag("--version", "cw2-bake " + version);
+    add_options(app, settings);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& success) {
@@ -107,11 +113,19 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv) {
     if (common::file_kind(settings.output) == common::FileKind::gltf) {
         if (settings.compress) throw UsageError("--compress is for .cw2mesh files");
         // A glTF holds floats and PNGs: they should be as good as the source.
-        if (app.count("--tangent-frame") == 0) settings.frame_form = FrameForm::f32;
-        if (app.count("--positions") == 0) settings.position_form = PositionForm::f32;
+        if (app.count("--tangent-frame") == 0) settings.frame_form = mesh_format::FrameForm::f32;
+        if (app.count("--positions") == 0) settings.position_form = mesh_format::PositionForm::f32;
         if (app.count("--textures") == 0) settings.textures = TextureMode::lossless;
     }
     return settings;
+}
+
+void show_command_line(const std::function<void(const CLI::App&)>& look) {
+    Settings settings;
+    CLI::App app(kDescription, "cw2-bake");
+    app.set_version_flag("--version", "");
+    add_options(app, settings);
+    look(app);
 }
 
 }  // namespace bake

@@ -2,11 +2,17 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "cw2-bake/textures/texture.h"
 #include "mesh-format/layout.h"
+
+namespace CLI {
+class App;
+}
 
 namespace bake {
 
@@ -33,7 +39,12 @@ class UsageError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Reads the command line. `--help` and `--version` print and give nothing. Throws UsageError.
-std::optional<Settings> parse_settings(int argc, const char* const* argv);
+/// Reads the command line. `--help` and `--version`, which prints "cw2-bake " and `version`, give
+/// nothing. Throws UsageError.
+std::optional<Settings> parse_settings(int argc, const char* const* argv,
+                                       const std::string& version);
+
+/// Shows `look` the whole command line as CLI11 has it.
+void show_command_line(const std::function<void(const CLI::App&)>& look);
 
 }  // namespace bake

@@ -6,7 +6,9 @@
 #include <string>
 
 #include "common/io.h"
+#include "common/program.h"
 #include "common/signals.h"
+#include "common/version.h"
 #include "cw2/headless.h"
 #include "cw2/interactive.h"
 #include "cw2/options/config.h"
@@ -33,7 +35,7 @@ int run(const cw2::Options& options) {
     // A scene that is none is told before a device or a display is missed.
     if (!options.list_devices) const common::MappedFile exists(options.scene);
     if (!options.list_devices && !options.output && !options.pixel) {
-        return cw2::run_window(options, CW2_SOURCE_DIR);
+        return cw2::run_window(options, common::beside_program("../share/cw2"));
     }
 
     if (!options.list_devices) return cw2::render_headless(options);
@@ -47,7 +49,7 @@ int run(const cw2::Options& options) {
 int main(int argc, char** argv) {
     common::handle_signals("cw2");
     try {
-        const auto options = cw2::parse_options(argc, argv);
+        const auto options = cw2::parse_options(argc, argv, common::version());
         return options ? run(*options) : 0;
     } catch (const cw2::UsageError& error) {
         tell(error.what());

@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "common/io.h"
+#include "common/program.h"
 #include "mesh-format/file.h"
 
 namespace cw2 {
@@ -34,11 +35,6 @@ constexpr std::uintmax_t kCacheBytes = std::uintmax_t{2} << 30;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
     throw common::FileError(path.string() + ": " + what);
-}
-
-fs::path own_folder() {
-    std::error_code error;
-    return fs::read_symlink("/proc/self/exe", error).parent_path();
 }
 
 /// Empty where there is no place for one.
@@ -131,7 +127,9 @@ constexpr std::string_view kPrefix = "cw2-bake: ";
 
 SourceBake::SourceBake(const fs::path& source, const BakeSettings& settings,
                        std::function<void(const std::string&)> tell)
-    : source_(fs::absolute(source)), baker_(own_folder() / "cw2-bake"), tell_(std::move(tell)) {
+    : source_(fs::absolute(source)),
+      baker_(common::beside_program("cw2-bake")),
+      tell_(std::move(tell)) {
     const common::MappedFile exists(source);
     if (::access(baker_.c_str(), X_OK) != 0)
         fail(source, fmt::format("is not baked yet, and there is no cw2-bake beside cw2 ({})",

@@ -9,5 +9,5 @@ if [[ ! $version =~ version\ 14\. ]]; then
     echo "skipped: needs clang-format 14; here: $version"
     exit 77
 fi
-find assets common cw2 cw2-bake docs mesh-format shaders tests \
+find assets common cw2 cw2-bake docs mesh-format packaging shaders tests \
     \( -name '*.cpp' -o -name '*.h' \) -exec clang-format --dry-run -Werror {} +

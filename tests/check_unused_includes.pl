@@ -10,7 +10,7 @@ use File::Find;
 use File::Spec::Functions qw(catdir);
 use FindBin;
 
-my @folders = qw(assets common cw2 cw2-bake docs mesh-format shaders tests);
+my @folders = qw(assets common cw2 cw2-bake docs mesh-format packaging shaders tests);
 
 # header | a pattern that whoever needs it matches. Every standard header in use must be here.
 my %uses = map { /^\s*(\S+)\s*\|\s*(.+?)\s*$/ ? ($1 => qr/\b(?:$2)/) : () } split /\n/, <<'TABLE';

@@ -5,17 +5,17 @@
 
 #include <utility>
 
+#include "common/program.h"
 #include "cw2-bake/gltf/draco_reader.h"
 #include "cw2-bake/gltf/json.h"
 
 namespace bake {
 namespace {
 
-/// The module lies beside the executable and stays loaded. Null, and why in `error`, where it
+/// The module stays loaded. Null, and why in `error`, where it
 /// cannot be.
 DracoReader* load_draco_reader(std::string& error) {
-    const std::filesystem::path module =
-        std::filesystem::read_symlink("/proc/self/exe").parent_path() / kDracoReaderModule;
+    const auto module = common::beside_program(kDracoReaderModule);
     void* handle = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
     void* symbol = handle ? dlsym(handle, kDracoReaderSymbol) : nullptr;
     if (!symbol) error = dlerror();

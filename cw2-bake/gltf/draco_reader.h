@@ -26,7 +26,7 @@ struct DracoMesh {
 /// What the module draco_reader exports: fills in the mesh whose attributes are asked for and
 /// returns true, or sets `error`.
 using DracoReader = bool(std::span<const std::byte> data, DracoMesh& mesh, std::string& error);
-inline constexpr const char* kDracoReaderModule = "draco_reader.so";
+inline constexpr const char* kDracoReaderModule = "../lib/cw2/draco_reader.so";
 inline constexpr const char* kDracoReaderSymbol = "cw2_bake_draco_reader";
 
 }  // namespace bake

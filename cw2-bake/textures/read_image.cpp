@@ -14,15 +14,18 @@
 
 #include "common/io.h"
 #include "common/lfs_pointer.h"
+#include "common/program.h"
 #include "cw2-bake/textures/read_common_image.h"
 
 namespace bake {
 namespace {
 
-/// The module lies beside the executable and stays loaded.
+/// The module stays loaded.
 ImageReader* load_image_reader() {
-    const std::filesystem::path module =
-        std::filesystem::read_symlink("/proc/self/exe").parent_path() / kImageReaderModule;
+    const auto module = common::beside_program(kImageReaderModule);
+    if (!std::filesystem::exists(module))
+        throw ImageError("other formats than PNG and JPEG take OpenImageIO, and " +
+                         module.string() + " is not there");
     // Lazy: binding every function of 250 libraries takes longer than decoding an image.
     void* handle = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
     void* symbol = handle ? dlsym(handle, kImageReaderSymbol) : nullptr;

@@ -51,6 +51,27 @@ void add_to(CLI::App& app, const Setting& setting, Options& options) {
     }
 }
 
+struct CommandLine {
+    explicit CommandLine(const std::string& version)
+        : app("Draws a .cw2mesh file, an OBJ or a glTF: in a window, or with --output into a "
+              "picture with no display.",
+              "cw2") {
+        app.footer(controls_text());
+        app.set_version_flag("--version", "cw2 " + version);
+        for (const Setting& setting : settings) add_to(app, setting, options);
+        app.add_option(
+               "--config", config,
+               "read options from a file of `name = value` lines; the command line wins, and "
+               "--NAME default or --FLAG=false undoes")
+            ->type_name("FILE.toml");
+    }
+
+    const std::vector<Setting> settings = all_settings();
+    Options options;
+    std::optional<std::filesystem::path> config;
+    CLI::App app;
+};
+
 /// Takes over the file's settings that the command line does not have; it looks at all of them.
 void apply_config(const std::filesystem::path& path, const std::vector<Setting>& settings,
                   const CLI::App& app, Options& options) {
@@ -122,27 +143,14 @@ bool is_source(const std::filesystem::path& scene) {
     return kind == common::FileKind::obj || kind == common::FileKind::gltf;
 }
 
-std::optional<Options> parse_options(int argc, const char* const* argv) {
-    const std::vector<Setting> settings = all_settings();
-    Options options;
-    CLI::App app(
-        "Draws a .cw2mesh file, an OBJ or a glTF: in a window, or with --output into a picture "
-        "with no "
-        "display.",
-        "cw2");
-    app.footer(controls_text());
-    app.set_version_flag("--version", "cw2 " CW2_VERSION);
-    for (const Setting& setting : settings) add_to(app, setting, options);
-    std::optional<std::filesystem::path> config;
-    app.add_option("--config", config,
-                   "read options from a file of `name = value` lines; the command line wins, and "
-                   "--NAME default or --FLAG=false undoes")
-        ->type_name("FILE.toml");
+std::optional<Options> parse_options(int argc, const char* const* argv,
+                                     const std::string& version) {
+    CommandLine line(version);
     try {
-        app.parse(argc, argv);
+        line.app.parse(argc, argv);
     } catch (const CLI::Success& success) {
         std::ostringstream text;
-        app.exit(success, text, text);
+        line.app.exit(success, text, text);
         common::print(text.str());
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
@@ -151,13 +159,18 @@ std::optional<Options> parse_options(int argc, const char* const* argv) {
         // CLI11 leaves it to std::stoll.
         throw UsageError("a switch with '=' is followed by true or false");
     }
-    if (config) {
-        apply_config(*config, settings, app, options);
+    if (line.config) {
+        apply_config(*line.config, line.settings, line.app, line.options);
         // A split of the file would hide the view that the command line asks for.
-        if (app.count("--view") > 0 && app.count("--split") == 0) options.split.reset();
+        if (line.app.count("--view") > 0 && line.app.count("--split") == 0)
+            line.options.split.reset();
     }
-    require_sense(options);
-    return options;
+    require_sense(line.options);
+    return line.options;
+}
+
+void show_command_line(const std::function<void(const CLI::App&)>& look) {
+    look(CommandLine("").app);
 }
 
 void write_config(const std::filesystem::path& path, const Options& options) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -11,6 +12,10 @@
 
 #include "cw2/render/frames.h"
 #include "cw2/render/view.h"
+
+namespace CLI {
+class App;
+}
 
 namespace cw2 {
 
@@ -99,9 +104,13 @@ bool is_source(const std::filesystem::path& scene);
 
 /// Reads the command line, and the file that its --config names, whose keys are the names of the
 /// options. Relative paths in either are relative to the working directory. `--help` and
-/// `--version` print and give nothing. Throws UsageError, and common::FileError where the
-/// config file cannot be read.
-std::optional<Options> parse_options(int argc, const char* const* argv);
+/// `--version`, which prints "cw2 " and `version`, give nothing. Throws UsageError, and
+/// common::FileError where the config file cannot be read.
+std::optional<Options> parse_options(int argc, const char* const* argv,
+                                     const std::string& version = {});
+
+/// Shows `look` the whole command line as CLI11 has it.
+void show_command_line(const std::function<void(const CLI::App&)>& look);
 
 /// Writes a file that `--config` reads as these options, every number exactly. It replaces `path`
 /// whole. Throws common::FileError.
