@@ -102,7 +102,7 @@ std::string fish_completion(const CommandLine& line) {
         std::string values = fmt::format("{}", fmt::join(option.choices, " "));
         if (!option.list_option.empty())
             values =
-                fmt::format(R"(({} | string replace -r '\s+' \t))", list_command(line, option));
+                fmt::format(R"(({} | string replace -r ':?\s+' \t))", list_command(line, option));
         if (!values.empty()) text += fmt::format(" -a {}", in_apostrophes(values));
         text += fmt::format(" -d {}\n", in_apostrophes(option.description));
     }

@@ -9,7 +9,7 @@ status=0
 
 # Makes the tree anew: base/low.h below geometry/high.h, and a test that includes both.
 make_tree() {
-    rm -rf ./* && mkdir -p assets common cw2/render cw2-bake/base cw2-bake/geometry docs mesh-format \
+    rm -rf ./* && mkdir -p assets common cw2/render cw2-bake/base cw2-bake/geometry docs mesh-format packaging \
         shaders tests
     cp "$checkers/../.clang-format" .
     printf '#pragma once\n\nstruct Low {\n    int value;\n};\n' >cw2-bake/base/low.h

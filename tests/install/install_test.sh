@@ -38,7 +38,7 @@ for program in cw2 cw2-bake; do
         grep -qF -- "\\fB$option\\fR" <<<"$page" || fail "$program.1 lacks $option"
         grep -qE -- "[ \"|]$option[ \"|)]" "$share/bash-completion/completions/$program" ||
             fail "bash's completion of $program lacks $option"
-        grep -qE -- "[ {,]$option([[},']|$)" "$share/zsh/vendor-completions/_$program" ||
+        grep -qE -- "[ {,]$option([[},']|$)" "$share/zsh/site-functions/_$program" ||
             fail "zsh's completion of $program lacks $option"
         # -o is " -s o ", --output " -l output ".
         grep -qE -- " -[sl] ${option##*-} | -l ${option#--} " \
