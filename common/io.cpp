@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <mutex>
+#include <new>
 #include <random>
 #include <set>
 #include <system_error>
@@ -143,7 +144,9 @@ std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t 
     const Descriptor file = open_regular(path);
     const std::size_t size =
         std::min(static_cast<std::size_t>(status_of(file, path).st_size), most);
-    std::vector<std::byte> bytes(size);
+    std::vector<std::byte> bytes;
+    if (size > bytes.max_size()) throw std::bad_alloc();
+    bytes.resize(size);
     std::size_t done = 0;
     while (done < size) {
         const ssize_t count = ::read(file.get(), bytes.data() + done, size - done);

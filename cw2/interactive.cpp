@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <future>
 #include <glm/common.hpp>
 #include <memory>
 #include <optional>
@@ -43,6 +44,8 @@ constexpr double kIdleSeconds = 0.25;
 constexpr double kLookSeconds = 0.5;
 /// How often one asks how far a bake is.
 constexpr double kBakeSeconds = 0.05;
+/// How long something may load before one says so.
+constexpr double kPatienceSeconds = 0.3;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -87,6 +90,7 @@ class Session {
 
     void run() {
         while (!ended_ && !window_.closed()) step();
+        window_.hide();  // what is being loaded may take a while to end
     }
 
  private:
@@ -309,24 +313,27 @@ class Session {
         open_file();
     }
 
-    /// A file that takes the place of what is shown once it is baked, if it has to be.
-    struct Opening {
-        Options options;
+    /// What shall take the place of what is shown.
+    struct Wish {
+        std::filesystem::path scene;
         bool is_reload;  ///< of what is shown; camera and light stay
-        std::unique_ptr<SourceBake> bake;
-        std::string warning;  ///< the first one
+    };
 
-        std::filesystem::path file() const { return bake ? bake->baked() : options.scene; }
-        std::vector<std::filesystem::path> sources() const {
-            return bake ? bake->sources() : std::vector{options.scene};
-        }
+    /// A file on its way there: baked by a process, if it has to be, then loaded by a thread.
+    struct Opening {
+        Wish wish;
+        std::unique_ptr<SourceBake> bake{};
+        std::string warning{};  ///< the first one
+        std::optional<FileWatch> watch{};
+        Clock::time_point loading_since{};
+        std::future<std::unique_ptr<Scene>> scene{};  ///< destroyed first, which waits
     };
 
     std::unique_ptr<Scene> first_scene() {
         const auto bake = bake_of(asked_, device_, tell_user);
         if (bake) {
             wait_for(*bake);
-            watch_ = FileWatch(bake->sources());
+            watch_ = FileWatch(bake->sources(), bake->read_at());
         }
         return std::make_unique<Scene>(
             make_scene(device_, layouts_, load_scene_file(bake ? bake->baked() : asked_.scene),
@@ -334,33 +341,42 @@ class Session {
     }
 
     /// Opens the current file of the list.
-    void open_file() {
-        // What is set stays, but for camera and light, which begin as at the start.
+    void open_file() { begin_opening({files_.current(), false}); }
+
+    /// The options with which a scene is shown: what is set stays, but for camera and light, which
+    /// begin as at the start.
+    Options options_for(const Wish& wish) const {
         Options options = state_.options();
-        options.scene = files_.current();
+        options.scene = wish.scene;
+        if (wish.is_reload) return options;
         options.camera_position = asked_.camera_position;
         options.camera_target = asked_.camera_target;
         options.vertical_fov = asked_.vertical_fov;
         options.light_position = asked_.light_position;
         options.light_color = asked_.light_color;
-        begin_opening(std::move(options), false);
+        return options;
     }
 
     /// Shows the scene anew when its file, or one that it was made of, has changed.
     void follow_the_file() {
         if (seconds_since(last_look_) < kLookSeconds) return;
         last_look_ = Clock::now();
-        if (!opening_ && watch_.changed()) begin_opening(state_.options(), true);
+        if (!opening_ && watch_.changed()) begin_opening({state_.options().scene, true});
     }
 
     /// Where something cannot be opened the old scene stays.
-    void begin_opening(Options options, bool is_reload) {
-        opening_.emplace(Opening{.options = std::move(options), .is_reload = is_reload});
+    void begin_opening(Wish wish) {
+        if (opening_ && opening_->scene.valid()) {
+            next_ = std::move(wish);  // nobody waits here for what a thread is loading
+            return;
+        }
+        opening_.emplace(Opening{.wish = std::move(wish)});
         try {
-            opening_->bake = bake_of(opening_->options, device_, [this](const std::string& line) {
-                tell_user(line);
-                if (opening_->warning.empty()) opening_->warning = line;
-            });
+            opening_->bake =
+                bake_of(options_for(opening_->wish), device_, [this](const std::string& line) {
+                    tell_user(line);
+                    if (opening_->warning.empty()) opening_->warning = line;
+                });
             go_on_opening();
         } catch (const std::runtime_error& error) {
             refuse(error.what());
@@ -368,53 +384,69 @@ class Session {
     }
 
     void go_on_opening() {
+        const std::string name = opening_->wish.scene.filename().string();
         try {
             if (opening_->bake && !opening_->bake->done(std::chrono::milliseconds(0))) {
-                ui_.say(fmt::format("baking {} {}", opening_->options.scene.filename().string(),
-                                    opening_->bake->progress()),
-                        false);
+                ui_.say(fmt::format("baking {} {}", name, opening_->bake->progress()), false);
                 unshown_ = true;
                 return;
             }
-            opening_->is_reload ? reload() : open();
+            if (!opening_->scene.valid()) begin_loading();
+            if (opening_->scene.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+                if (seconds_since(opening_->loading_since) < kPatienceSeconds) return;
+                ui_.say("loading " + name, false);
+                unshown_ = true;
+                return;
+            }
+            show_opened(opening_->scene.get());
             opening_.reset();
             title_.set_error({});
             stale_ = true;
         } catch (const std::runtime_error& error) {
             refuse(error.what());
         }
+        if (next_) begin_opening(*std::exchange(next_, std::nullopt));
     }
 
-    void open() {
-        const Options& options = opening_->options;
-        FileWatch watch(opening_->sources());
-        auto scene =
-            std::make_unique<Scene>(make_scene(device_, layouts_, load_scene_file(opening_->file()),
-                                               texture_settings(options, device_)));
-        ViewerState state(completed(options, scene->start(), scene->bounds()), scene->bounds(),
-                          aspect_of(extent_));
+    void begin_loading() {
+        const SourceBake* const bake = opening_->bake.get();
+        const std::filesystem::path& scene = opening_->wish.scene;
+        if (bake) {
+            opening_->watch.emplace(bake->sources(), bake->read_at());
+        } else if (!opening_->wish.is_reload) {
+            opening_->watch.emplace(std::vector{scene});
+        }
+        opening_->loading_since = Clock::now();
+        opening_->scene = std::async(
+            std::launch::async, [this, path = bake ? bake->baked() : scene,
+                                 settings = texture_settings(state_.options(), device_)] {
+                SceneFile file = read_scene_file(path);
+                try {
+                    return std::make_unique<Scene>(
+                        make_scene(device_, layouts_, std::move(file), settings));
+                } catch (const std::bad_alloc&) {
+                    refuse_for_memory(path);
+                }
+            });
+    }
+
+    void show_opened(std::unique_ptr<Scene> scene) {
+        const Wish& wish = opening_->wish;
+        presenter_.finish();
+        scene_ = std::move(scene);
+        if (opening_->watch) watch_ = std::move(*opening_->watch);
+        reader_.forget(wish.is_reload);
+        if (wish.is_reload) {
+            state_.set_bounds(scene_->bounds());
+            say_opened(wish.scene.filename().string() + " has changed: reloaded");
+            return;
+        }
+        ViewerState state(completed(options_for(wish), scene_->start(), scene_->bounds()),
+                          scene_->bounds(), aspect_of(extent_));
         state.set(state.options(), state_.light_moves());
-        presenter_.finish();
-        scene_ = std::move(scene);
         state_ = std::move(state);
-        watch_ = std::move(watch);
-        reader_.forget(false);
-        title_.set_scene(options.scene.filename().string(), files_.place());
-        say_opened("opened " + options.scene.string());
-    }
-
-    void reload() {
-        const std::filesystem::path& path = opening_->options.scene;
-        auto scene = std::make_unique<Scene>(
-            make_scene(device_, layouts_, reload_scene_file(opening_->file()),
-                       texture_settings(opening_->options, device_)));
-        presenter_.finish();
-        scene_ = std::move(scene);
-        // A bake may have read other files than the one before.
-        if (opening_->bake) watch_ = FileWatch(opening_->sources());
-        reader_.forget(true);
-        state_.set_bounds(scene_->bounds());
-        say_opened(fmt::format("{} has changed: reloaded", path.filename().string()));
+        title_.set_scene(wish.scene.filename().string(), files_.place());
+        say_opened("opened " + wish.scene.string());
     }
 
     void say_opened(const std::string& what) {
@@ -423,10 +455,9 @@ class Session {
     }
 
     void refuse(const std::string& error) {
-        const std::filesystem::path folder = opening_->options.scene.parent_path() / "";
-        const bool is_reload = opening_->is_reload;
+        const Wish wish = opening_->wish;
         opening_.reset();
-        report(error, is_reload ? folder.string() : std::string());
+        report(error, wish.is_reload ? (wish.scene.parent_path() / "").string() : std::string());
     }
 
     /// False where nothing can be shown now.
@@ -456,9 +487,12 @@ class Session {
 
     /// `line` on standard output, `message` in the panel or over the picture.
     void tell(std::string_view line, const std::string& message) {
-        fmt::print("{}\n", line);
-        std::fflush(stdout);
-        ui_.say(message, false);
+        try {
+            common::print(fmt::format("{}\n", line));
+            ui_.say(message, false);
+        } catch (const common::FileError& error) {
+            report(error.what());
+        }
     }
 
     /// An error on standard error and, without the folder, in the window; with a folder in the
@@ -499,6 +533,7 @@ class Session {
     Shot wanted_ = Shot::none;
     bool idle_ = false;  ///< nothing happens until something is done
     std::optional<Opening> opening_;
+    std::optional<Wish> next_;  ///< opened after it
     bool ended_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <pty.h>
 #include <sys/file.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <termios.h>
@@ -23,6 +24,7 @@
 
 #include "common/io.h"
 #include "common/program.h"
+#include "common/signals.h"
 #include "mesh-format/file.h"
 
 namespace cw2 {
@@ -58,6 +60,19 @@ std::string stamp_of(const fs::path& path) {
     if (::stat(path.c_str(), &status) != 0) return "missing";
     return fmt::format("{}.{:09} {} {}", status.st_mtim.tv_sec, status.st_mtim.tv_nsec,
                        status.st_size, status.st_ino);
+}
+
+/// At the start of time where there is no such file.
+std::chrono::system_clock::time_point written_at(const fs::path& path) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) return {};
+    return std::chrono::system_clock::time_point(std::chrono::seconds(status.st_mtim.tv_sec) +
+                                                 std::chrono::nanoseconds(status.st_mtim.tv_nsec));
+}
+
+/// Files are given the time of the last tick, of which there are 100 a second at least.
+std::chrono::system_clock::time_point now_for_files() {
+    return std::chrono::system_clock::now() - std::chrono::milliseconds(10);
 }
 
 std::string text_of(const fs::path& path) {
@@ -113,6 +128,7 @@ std::array<int, 2> open_channel() {
     std::vector<char*> arguments;
     for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
     const int nothing = ::open("/dev/null", O_RDWR);
     if (nothing < 0 || ::dup2(nothing, STDIN_FILENO) < 0 || ::dup2(nothing, STDOUT_FILENO) < 0 ||
         ::dup2(output, STDERR_FILENO) < 0)
@@ -151,17 +167,26 @@ SourceBake::SourceBake(const fs::path& source, const BakeSettings& settings,
     const auto bytes = std::as_bytes(std::span(key_));
     baked_ = folder_ /
              fmt::format("{:016x}.cw2mesh", mesh_format::checksum({bytes.data(), bytes.size()}));
+    if (is_temporary_)
+        for (const fs::path& path : {folder_, baked_, depfile()})
+            common::note_temporary(path.string());
 }
 
 SourceBake::~SourceBake() {
     if (process_ > 0) {
         ::kill(process_, SIGTERM);
         while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) continue;
+        common::note_child(0);
     }
     if (output_ >= 0) ::close(output_);
     if (lock_ >= 0) ::close(lock_);
-    std::error_code ignored;
-    if (is_temporary_) fs::remove_all(folder_, ignored);
+    if (is_temporary_)
+        for (const fs::path& path : {depfile(), baked_, folder_})
+            common::remove_temporary(path.string());
+}
+
+fs::path SourceBake::depfile() const {
+    return fs::path(baked_).replace_extension("d");
 }
 
 bool SourceBake::done(std::chrono::milliseconds patience) {
@@ -204,6 +229,7 @@ bool SourceBake::reuse() {
         lines.push_back(notes.substr(at, end - at));
         at = end + 1;
     }
+    read_at_ = now_for_files();
     std::size_t i = 0;
     for (; i < lines.size() && !lines[i].empty(); ++i) {
         const std::size_t tab = std::min(lines[i].find('\t'), lines[i].size() - 1);
@@ -220,14 +246,13 @@ bool SourceBake::reuse() {
 void SourceBake::start() {
     sources_.clear();
     std::vector<std::string> command{baker_.string(), source_.string(), "-o", baked_.string()};
-    if (has_depfile_)
-        command.insert(command.end(),
-                       {"--depfile", fs::path(baked_).replace_extension("d").string()});
+    if (has_depfile_) command.insert(command.end(), {"--depfile", depfile().string()});
     command.insert(command.end(), options_.begin(), options_.end());
     const std::array<int, 2> ends = open_channel();
-    started_ = fs::file_time_type::clock::now();
+    read_at_ = now_for_files();
     process_ = ::fork();
     if (process_ == 0) become(command, ends[1]);
+    if (process_ > 0) common::note_child(process_);
     ::close(ends[1]);
     output_ = ends[0];
     if (process_ < 0) fail(baker_, "cannot be started: " + std::generic_category().message(errno));
@@ -272,6 +297,7 @@ bool SourceBake::finish() {
     int status = 0;
     while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) continue;
     process_ = -1;
+    common::note_child(0);
     ::close(std::exchange(output_, -1));
     progress_.clear();
     if (!WIFEXITED(status))
@@ -287,8 +313,7 @@ bool SourceBake::finish() {
         }
         throw common::FileError(last.starts_with(kPrefix) ? last.substr(kPrefix.size()) : last);
     }
-    sources_ = has_depfile_ ? inputs_of(text_of(fs::path(baked_).replace_extension("d")))
-                            : std::vector{source_};
+    sources_ = has_depfile_ ? inputs_of(text_of(depfile())) : std::vector{source_};
     if (is_temporary_) return true;
     if (has_depfile_) note_sources();
     remove_old_entries();
@@ -299,10 +324,7 @@ bool SourceBake::finish() {
 void SourceBake::note_sources() {
     std::string notes = key_;
     for (const fs::path& path : sources_) {
-        std::error_code error;
-        const fs::file_time_type changed = fs::last_write_time(path, error);
-        if (path.string().find('\n') != std::string::npos || (!error && changed >= *started_))
-            return;
+        if (path.string().find('\n') != std::string::npos || written_at(path) >= read_at_) return;
         notes += stamp_of(path) + '\t' + path.string() + '\n';
     }
     notes += '\n';
@@ -352,7 +374,8 @@ std::unique_ptr<SourceBake> bake_of(const Options& options, const Device& device
 }
 
 void tell_user(const std::string& line) {
-    fmt::print(stderr, "{}\n", line);
+    // In the place of what wait_for() shows.
+    fmt::print(stderr, "{}{}\n", ::isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "", line);
 }
 
 void wait_for(SourceBake& bake) {

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,7 +34,8 @@ class SourceBake {
     /// common::FileError where `source` or cw2-bake is missing.
     SourceBake(const std::filesystem::path& source, const BakeSettings& settings,
                std::function<void(const std::string& line)> tell);
-    /// Ends cw2-bake, if it still runs, and removes a temporary file.
+    /// Ends cw2-bake, if it still runs, and removes a temporary file; so do signals that end this
+    /// program.
     ~SourceBake();
     SourceBake(const SourceBake&) = delete;
     SourceBake& operator=(const SourceBake&) = delete;
@@ -47,6 +47,8 @@ class SourceBake {
     const std::filesystem::path& baked() const { return baked_; }
     /// What it was made of, files that are missing included; once done.
     const std::vector<std::filesystem::path>& sources() const { return sources_; }
+    /// What is written to them from then on may not be in it; once done.
+    std::chrono::system_clock::time_point read_at() const { return read_at_; }
     /// How far cw2-bake says it is; empty while it says nothing.
     const std::string& progress() const { return progress_; }
 
@@ -59,6 +61,7 @@ class SourceBake {
     bool finish();
     void note_sources();
     void remove_old_entries() const;
+    std::filesystem::path depfile() const;
 
     std::filesystem::path source_;
     std::filesystem::path baker_;
@@ -72,7 +75,7 @@ class SourceBake {
     std::vector<std::string> lines_;
     std::string progress_;
     std::string text_;  ///< of the line at hand
-    std::optional<std::filesystem::file_time_type> started_;
+    std::chrono::system_clock::time_point read_at_;
     bool has_depfile_ = true;
     bool is_done_ = false;
     int lock_ = -1;

@@ -99,7 +99,7 @@ Averager::Averager(const Device& device, const Layouts& layouts, const ShaderCod
 void Averager::fit(VkExtent2D extent) {
     if (extent.width == extent_.width && extent.height == extent_.height) return;
     // Frames of the old size may still be in flight.
-    check(vkDeviceWaitIdle(device_.get()), "vkDeviceWaitIdle");
+    check(device_.wait_idle(), "vkDeviceWaitIdle");
     constexpr VkImageUsageFlags kStored = VK_IMAGE_USAGE_STORAGE_BIT;
     frame_ = make_image(device_, {.format = kColors,
                                   .extent = extent,

@@ -184,7 +184,7 @@ void Renderer::use_shaders(const ShaderCode& code) {
 void Renderer::resize(VkExtent2D extent) {
     if (extent.width == extent_.width && extent.height == extent_.height) return;
     // A frame of the old size may still be in flight.
-    check(vkDeviceWaitIdle(device_.get()), "vkDeviceWaitIdle");
+    check(device_.wait_idle(), "vkDeviceWaitIdle");
     depth_ = make_image(device_, {.format = kDepthFormat,
                                   .extent = extent,
                                   .samples = formats_.samples,

@@ -1,13 +1,10 @@
 #include "cw2/render/scene_file.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <fstream>
+#include <cstring>
+#include <new>
 #include <span>
 #include <string>
 
-#include "common/lfs_pointer.h"
 #include "cw2/render/vertex_positions.h"
 
 namespace cw2 {
@@ -24,28 +21,35 @@ void read(SceneFile& file, std::span<const std::byte> bytes, const std::string& 
 
 }  // namespace
 
-SceneFile load_scene_file(const std::filesystem::path& path) {
-    SceneFile file;
-    file.mapped.emplace(path);
-    read(file, file.mapped->bytes(), path.string());
-    return file;
+void refuse_for_memory(const std::filesystem::path& path) {
+    throw common::FileError(path.string() + ": there is not enough memory to load it");
 }
 
-SceneFile reload_scene_file(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary | std::ios::ate);
-    const auto size = static_cast<std::streamoff>(stream.tellg());
-    SceneFile file;
-    file.bytes.resize(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)));
-    stream.seekg(0);
-    if (!stream.read(reinterpret_cast<char*>(file.bytes.data()),
-                     static_cast<std::streamsize>(size))) {
-        throw common::FileError(fmt::format("{}: cannot be read", path.string()));
+SceneFile load_scene_file(const std::filesystem::path& path) {
+    try {
+        SceneFile file;
+        file.mapped.emplace(path);
+        read(file, file.mapped->bytes(), path.string());
+        return file;
+    } catch (const std::bad_alloc&) {
+        refuse_for_memory(path);
     }
-    if (common::is_lfs_pointer(file.bytes)) {
-        throw common::FileError(fmt::format("{}: {}", path.string(), common::kIsLfsPointer));
+}
+
+SceneFile read_scene_file(const std::filesystem::path& path) {
+    try {
+        SceneFile file;
+        // What is no such file may be larger than memory.
+        file.bytes = common::read_file(path, sizeof(mesh_format::Header));
+        mesh_format::Header header{};
+        std::memcpy(&header, file.bytes.data(), file.bytes.size());
+        if (header.magic == mesh_format::kMagic && header.version == mesh_format::kVersion)
+            file.bytes = common::read_file(path, header.file_size + 1);
+        read(file, file.bytes, path.string());
+        return file;
+    } catch (const std::bad_alloc&) {
+        refuse_for_memory(path);
     }
-    read(file, file.bytes, path.string());
-    return file;
 }
 
 }  // namespace cw2

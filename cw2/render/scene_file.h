@@ -28,8 +28,11 @@ struct SceneFile {
 /// Throws common::FileError or mesh_format::FormatError.
 SceneFile load_scene_file(const std::filesystem::path& path);
 
-/// The same for a file that somebody may be writing: mapped bytes that are cut off would end the
-/// process, so these are read.
-SceneFile reload_scene_file(const std::filesystem::path& path);
+/// The same for a window, which must not end when somebody cuts off bytes that it has mapped: the
+/// file is read.
+SceneFile read_scene_file(const std::filesystem::path& path);
+
+/// Throws the common::FileError of those above for a lack of memory.
+[[noreturn]] void refuse_for_memory(const std::filesystem::path& path);
 
 }  // namespace cw2

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -74,7 +75,23 @@ class Device {
 
     VkDevice get() const { return device_.get(); }
     VkPhysicalDevice physical() const { return physical_; }
-    VkQueue queue() const { return queue_; }
+    /// For one thread at a time, as vkQueue...() want it.
+    class Queue {
+     public:
+        explicit Queue(const Device& device) : lock_(device.queue_mutex_), queue_(device.queue_) {}
+        VkQueue get() const { return queue_; }
+
+     private:
+        std::unique_lock<std::mutex> lock_;
+        VkQueue queue_;
+    };
+    /// Waits for whoever has it.
+    Queue queue() const { return Queue(*this); }
+    /// Waits until the device has nothing to do.
+    VkResult wait_idle() const {
+        const Queue no_submissions = queue();
+        return vkDeviceWaitIdle(device_.get());
+    }
     std::uint32_t queue_family() const { return queue_family_; }
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     /// Whether images may be in the formats BC1 to BC5.
@@ -107,6 +124,7 @@ class Device {
     PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;
     LogicalDevice device_;
     VkQueue queue_ = VK_NULL_HANDLE;
+    mutable std::mutex queue_mutex_;
 };
 
 }  // namespace cw2

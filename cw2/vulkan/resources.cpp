@@ -270,8 +270,9 @@ void submit_and_wait(const Device& device, VkCommandBuffer commands) {
     const VkSubmitInfo2 submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
                                .commandBufferInfoCount = 1,
                                .pCommandBufferInfos = &buffer};
-    check(vkQueueSubmit2(device.queue(), 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit2");
-    check(vkQueueWaitIdle(device.queue()), "vkQueueWaitIdle");
+    const Device::Queue queue = device.queue();
+    check(vkQueueSubmit2(queue.get(), 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit2");
+    check(vkQueueWaitIdle(queue.get()), "vkQueueWaitIdle");
 }
 
 Uploader::Uploader(const Device& device)

@@ -79,7 +79,7 @@ bool Swapchain::fit(VkExtent2D window) {
     const VkSurfaceCapabilitiesKHR surface = capabilities(device_, surface_);
     const VkExtent2D extent = image_extent(surface, window);
     if (extent.width == 0 || extent.height == 0) return false;
-    check(vkDeviceWaitIdle(device_.get()), "vkDeviceWaitIdle");
+    check(device_.wait_idle(), "vkDeviceWaitIdle");
     make(surface, extent);
     window_ = window;
     stale_ = false;
@@ -150,7 +150,7 @@ void Swapchain::present(std::uint32_t index) {
                                 .swapchainCount = 1,
                                 .pSwapchains = &handle,
                                 .pImageIndices = &index};
-    const VkResult result = vkQueuePresentKHR(device_.queue(), &info);
+    const VkResult result = vkQueuePresentKHR(device_.queue().get(), &info);
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR) {
         stale_ = true;
     } else {

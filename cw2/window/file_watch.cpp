@@ -6,8 +6,16 @@
 
 namespace cw2 {
 
-FileWatch::FileWatch(std::vector<std::filesystem::path> paths)
-    : paths_(std::move(paths)), known_(look()), latest_(known_) {}
+FileWatch::FileWatch(std::vector<std::filesystem::path> paths, const std::optional<Time>& since)
+    : paths_(std::move(paths)), known_(look()), latest_(known_) {
+    if (!since) return;
+    for (std::optional<Stamp>& stamp : known_) {
+        if (!stamp) continue;
+        const Time written(std::chrono::seconds(stamp->seconds) +
+                           std::chrono::nanoseconds(stamp->nanoseconds));
+        if (written >= *since && written <= std::chrono::system_clock::now()) stamp.reset();
+    }
+}
 
 FileWatch::Stamps FileWatch::look() const {
     Stamps stamps;

@@ -57,7 +57,7 @@ Presenter::Presenter(const Device& device, VkSurfaceKHR surface, const Layouts& 
 }
 
 Presenter::~Presenter() {
-    vkDeviceWaitIdle(device_.get());
+    device_.wait_idle();
 }
 
 bool Presenter::show(const WindowContents& contents, VkExtent2D window) {
@@ -280,7 +280,7 @@ void Presenter::submit(const Slot& slot, std::uint32_t image) const {
                              .pCommandBufferInfos = &commands,
                              .signalSemaphoreInfoCount = 1,
                              .pSignalSemaphoreInfos = &rendered};
-    check(vkQueueSubmit2(device_.queue(), 1, &info, slot.done.get()), "vkQueueSubmit2");
+    check(vkQueueSubmit2(device_.queue().get(), 1, &info, slot.done.get()), "vkQueueSubmit2");
 }
 
 void Presenter::wait_for(std::uint32_t index) {

@@ -24,7 +24,7 @@ Ui::Ui(const Window& window, const Instance& instance, const Device& device, VkF
     : window_(window), instance_(instance), device_(device), format_(format), slots_(slots) {}
 
 Ui::~Ui() {
-    vkDeviceWaitIdle(device_.get());
+    device_.wait_idle();
 }
 
 void Ui::toggle_panel() {

@@ -158,7 +158,7 @@ UiPass::UiPass(GLFWwindow* window, const Instance& instance, const Device& devic
                                    .PhysicalDevice = device.physical(),
                                    .Device = device.get(),
                                    .QueueFamily = device.queue_family(),
-                                   .Queue = device.queue(),
+                                   .Queue = device.queue().get(),
                                    .DescriptorPool = descriptor_pool_.get(),
                                    .MinImageCount = std::max(slots, 2u),
                                    .ImageCount = std::max(slots, 2u),

@@ -79,6 +79,10 @@ void Window::show() {
     glfwGetCursorPos(handle_, &cursor_.x, &cursor_.y);
 }
 
+void Window::hide() {
+    glfwHideWindow(handle_);
+}
+
 void Window::set_title(const std::string& title) {
     glfwSetWindowTitle(handle_, title.c_str());
 }

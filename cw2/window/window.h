@@ -40,6 +40,7 @@ class Window {
     SurfaceHandle make_surface(const Instance& instance) const;
 
     void show();
+    void hide();
     void set_title(const std::string& title);
     /// Size in pixels; 0 x 0 while nothing of it is to be seen.
     VkExtent2D extent() const;

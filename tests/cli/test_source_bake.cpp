@@ -2,10 +2,14 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <chrono>
+#include <csignal>
+#include <cstdint>
 #include <fstream>
 #include <future>
 #include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/cli/scene_folder.h"
@@ -172,6 +176,52 @@ TEST_F(SourceBake, TheOldestEntriesGoAboveTwoGigabytes) {
     EXPECT_FALSE(fs::exists(folder / "older.cw2mesh"));
     EXPECT_FALSE(fs::exists(folder / "older.notes"));
     EXPECT_EQ(entries().size(), 3u);
+}
+
+TEST_F(SourceBake, SignalsLeaveNoTemporaryBake) {
+    std::string text = read("scene.obj");
+    for (int i = 0; i < 300'000; ++i) text += "v 0.5 0.25 " + std::to_string(i) + "\nf -1 1 2\n";
+    write("large.obj", text);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        Running running({CW2_PROGRAM, "large.obj", "--output", "a.png", "--size", "96x64"},
+                        {{"XDG_CACHE_HOME=/proc/none", "MESA_SHADER_CACHE_DISABLE=true",
+                          "TMPDIR=" + here("temporary").string()},
+                         folder_.path()});
+        while (fs::is_empty(here("temporary")))
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        ASSERT_EQ(::kill(running.process(), signal), 0);
+        EXPECT_EQ(running.wait().status, 128 + signal);
+        EXPECT_TRUE(fs::is_empty(here("temporary")));
+    }
+    EXPECT_FALSE(fs::exists(here("a.png")));
+}
+
+TEST_F(SourceBake, WhatAKilledBakeLeavesInTheCacheGoes) {
+    const fs::path folder = fs::path(cache_) / "cw2";
+    fs::create_directories(folder);
+    write("cache/cw2/0123456789abcdef.cw2mesh.cw2-x1y2z3", "half a bake");
+    draw_well("scene.obj", "a.png");
+    EXPECT_FALSE(fs::exists(folder / "0123456789abcdef.cw2mesh.cw2-x1y2z3"));
+}
+
+TEST_F(SourceBake, WarningsStandInLinesOfTheirOwn) {
+    std::string noise(std::size_t{3} * 2048 * 2048, '\0');
+    std::uint32_t random = 1;
+    for (char& c : noise) c = static_cast<char>((random = random * 1664525u + 1013904223u) >> 24);
+    write("noise.ppm", "P6 2048 2048 255\n" + noise);
+    write("noise.mtl",
+          "newmtl m\nmap_Kd noise.ppm\nmap_Pr noise.ppm\nmap_Ke noise.ppm\n"
+          "map_d gone.png\n");
+    write("noise.obj", "mtllib noise.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+    const std::string bake = std::string(BAKE_PROGRAM) + " noise.obj --threads 1 -o n.cw2mesh";
+    const std::string shown =
+        run({"/usr/bin/script", "-qec", bake, "/dev/null"}, {{}, folder_.path()}).out;
+    const std::size_t at = shown.find("cw2-bake: warning: ");
+    ASSERT_NE(at, std::string::npos) << shown;
+    const std::string before = shown.substr(0, at);
+    if (before.find('[') == std::string::npos) GTEST_SKIP() << "too fast for a bar";
+    EXPECT_TRUE(before.ends_with("\r\033[K")) << shown;
 }
 
 TEST_F(SourceBake, AMissingBakerIsNamed) {

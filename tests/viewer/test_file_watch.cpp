@@ -1,6 +1,7 @@
 // When a file counts as changed.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -9,6 +10,8 @@
 #include "tests/support/temporary_folder.h"
 
 namespace {
+
+namespace fs = std::filesystem;
 
 class FileWatch : public testing::Test {
  protected:
@@ -42,6 +45,22 @@ TEST_F(FileWatch, AFileThatIsGoneHasNotChangedUntilAnotherIsThere) {
     write("quite another");
     EXPECT_FALSE(watch.changed());
     EXPECT_TRUE(watch.changed());
+}
+
+TEST_F(FileWatch, WhatWasWrittenSinceATimeCountsAsChanged) {
+    using std::chrono::system_clock, std::chrono::minutes;
+    const auto write_at = [this](const fs::file_time_type& time) {
+        std::filesystem::last_write_time(path_, time);
+    };
+    const auto now = fs::file_time_type::clock::now();
+    write_at(now - minutes(2));
+    EXPECT_FALSE(cw2::FileWatch({path_}, system_clock::now() - minutes(1)).changed());
+    cw2::FileWatch watch({path_}, system_clock::now() - minutes(3));
+    EXPECT_TRUE(watch.changed());
+    EXPECT_FALSE(watch.changed());
+    // A clock that goes wrong makes no endless changes.
+    write_at(now + minutes(5));
+    EXPECT_FALSE(cw2::FileWatch({path_}, system_clock::now() - minutes(3)).changed());
 }
 
 TEST_F(FileWatch, AnyOfSeveralFilesCounts) {

@@ -386,6 +386,31 @@ check_bakes_what_it_opens() {
     close_window
 }
 
+check_notices_what_is_saved_while_it_bakes() {
+    export XDG_CACHE_HOME=$work/cache
+    mkdir "$work/bin" "$work/obj"
+    cp "$cw2" "$work/bin/cw2"
+    # It has read everything, and takes its time all the same.
+    printf '#!/bin/sh\n"%s" "$@"\nstatus=$?\ntouch "%s"\nsleep 1\nexit $status\n' \
+        "${cw2%/*}/cw2-bake" "$work/baked" >"$work/bin/cw2-bake"
+    chmod +x "$work/bin/cw2-bake"
+    local scene=$work/obj/a.obj
+    printf 'mtllib a.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nusemtl a\nf 1 2 3\n' >"$scene"
+    printf 'newmtl a\nKd 1 0 0\n' >"$work/obj/a.mtl"
+    (
+        until [[ -e $work/baked ]]; do sleep 0.02; done
+        printf 'newmtl a\nKd 0 1 0\n' >"$work/obj/a.mtl"
+    ) &
+    open_window "$work/bin/cw2" "$scene" --size 256x144 --samples 1
+    "$cw2" "$scene" --output "$work/green.png" --size 256x144 --samples 1
+    shows_green() {
+        take_picture
+        "$tools/compare_images" "$work/green.png" "$picture"
+    }
+    wait_until shows_green
+    close_window
+}
+
 check_opens_other_files() {
     local other=$work/other.cw2mesh broken=$work/broken.cw2mesh
     "${cw2%/*}/cw2-bake" "${scene%/*}/plate.obj" -o "$other" --quiet --textures none
@@ -610,6 +635,31 @@ check_reloads_the_scene() {
         same "$start" "$picture"
     }
     wait_until picture_is_as_before
+    close_window
+}
+
+check_survives_what_takes_the_place_of_the_scene() {
+    local scene_before=$scene what
+    scene=$work/stage.cw2mesh
+    cp "$scene_before" "$scene"
+    open_window "$cw2" "$scene" "${options[@]}"
+    take_picture
+    local start=$picture
+    for what in "mkdir" "mkfifo" "truncate -s 1T" "head -c 100000 /dev/urandom >" "touch" \
+        "mknod -m 0 unreadable c 1 5; ln -s unreadable" "ln -s ."; do
+        rm -rf "$scene"
+        (cd "$work" && eval "$what stage.cw2mesh") || continue # only root makes devices
+        wait_until test -s "$work/err"
+        [[ $(tr -d '\0' <"$work/err") == "cw2: $scene: "* ]] || fail "no error with the file"
+        take_picture
+        expect_same "$start" "$picture"
+        : >"$work/err"
+    done
+    rm -rf "$scene"
+    cp "$scene_before" "$scene"
+    wait_until eval '! title_has "stage.cw2mesh: "'
+    take_picture
+    expect_same "$start" "$picture"
     close_window
 }
 
