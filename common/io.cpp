@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cerrno>
 #include <cstdio>
 #include <mutex>
@@ -198,6 +199,17 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
     std::swap(changed_, other.changed_);
     std::swap(bytes_, other.bytes_);
     return *this;
+}
+
+void MappedFile::forget(std::span<const std::byte> part) const {
+    static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+    // The mapping starts at a page; those at the ends of the part belong to others, too.
+    const auto begin = static_cast<std::size_t>(part.data() - bytes_.data());
+    assert(begin + part.size() <= bytes_.size());
+    const std::size_t first = (begin + page - 1) / page * page;
+    const std::size_t end = (begin + part.size()) / page * page;
+    if (first >= end) return;
+    ::madvise(const_cast<std::byte*>(bytes_.data()) + first, end - first, MADV_DONTNEED);
 }
 
 void MappedFile::require_unchanged() const {

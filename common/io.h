@@ -44,6 +44,8 @@ class MappedFile {
     MappedFile& operator=(MappedFile&& other) noexcept;
 
     std::span<const std::byte> bytes() const { return bytes_; }
+    /// Lets go of the memory of a part, which is read anew if somebody needs it.
+    void forget(std::span<const std::byte> part) const;
     /// Throws FileError if somebody has written to the file since it was mapped: then what was read
     /// may be partly what it was, partly what it has become.
     void require_unchanged() const;

@@ -153,11 +153,15 @@ Document parse(std::span<const std::byte> bytes, std::string_view name, Payloads
     document.encoded_indices = sections.bytes(SectionKind::encoded_indices);
     check(document, name);
     for (std::size_t i = 0; payloads == Payloads::checked && i < document.textures.size(); ++i) {
-        const TextureRecord& texture = document.textures[i];
-        checker.require(checksum(document.payload(texture)) == texture.checksum, "texture", i,
-                        "is altered: wrong checksum of its texels");
+        check_payload(document, i, name);
     }
     return document;
+}
+
+void check_payload(const Document& document, std::size_t texture, std::string_view name) {
+    const TextureRecord& record = document.textures[texture];
+    Checker(name).require(checksum(document.payload(record)) == record.checksum, "texture", texture,
+                          "is altered: wrong checksum of its texels");
 }
 
 std::uint64_t write(const Document& document, std::span<const std::span<const std::byte>> payloads,

@@ -54,6 +54,9 @@ enum class Payloads {
     unchecked,  ///< by who uses one
 };
 
+/// Throws FormatError unless the payload of the texture has its checksum.
+void check_payload(const Document& document, std::size_t texture, std::string_view name);
+
 /// Checks `bytes` completely and returns the document in it: magic, version, sizes, checksums, and
 /// what check() asks. `bytes` starts at a multiple of 16 and must outlive the document; `name` is
 /// used in messages. Throws FormatError; never reads outside `bytes`, allocates nothing that grows

@@ -21,13 +21,15 @@ layout(location = kUvLocation) in uvec2 uv_words;
 layout(location = kColorLocation) in vec4 encoded_color;
 #endif
 
+// Three locations and not five: on CPUs every one is set up for every triangle, and kept with it.
 layout(location = 0) out vec3 world_position;
+layout(location = 0, component = 3) out float handedness;  // the same at a triangle's corners
 layout(location = 1) out vec3 world_normal;
+layout(location = 1, component = 3) out float uv_x;
 layout(location = 2) out vec3 world_tangent;
-layout(location = 3) flat out float handedness;
-layout(location = 4) out vec2 uv;
+layout(location = 2, component = 3) out float uv_y;
 #ifdef VERTEX_COLORS
-layout(location = 5) out vec4 vertex_color;  // linear
+layout(location = 3) out vec4 vertex_color;  // linear
 #endif
 
 void main() {
@@ -35,7 +37,10 @@ void main() {
     world_position = position_form == 0
                          ? vec3(draw.position_origin + ivec3(position_words.xyz)) * draw.position_step
                          : uintBitsToFloat(position_words.xyz);
-    uv = uv_form == 0 ? draw.uv_origin + draw.uv_step * vec2(uv_words) : uintBitsToFloat(uv_words);
+    const vec2 uv =
+        uv_form == 0 ? draw.uv_origin + draw.uv_step * vec2(uv_words) : uintBitsToFloat(uv_words);
+    uv_x = uv.x;
+    uv_y = uv.y;
     decode_frame(frame_form, frame_words, world_tangent, world_normal, handedness);
 #ifdef VERTEX_COLORS
     vertex_color = vec4(linear_of_srgb(encoded_color.r), linear_of_srgb(encoded_color.g),

@@ -24,17 +24,21 @@ layout(set = kMaterialSet, binding = kMetalnessBinding) uniform sampler2D metaln
 layout(set = kMaterialSet, binding = kNormalMapBinding) uniform sampler2D normal_map;
 
 layout(location = 0) in vec3 world_position;
+layout(location = 0, component = 3) in float signed_by_handedness;
 layout(location = 1) in vec3 world_normal;
+layout(location = 1, component = 3) in float uv_x;
 layout(location = 2) in vec3 world_tangent;
-layout(location = 3) flat in float handedness;
-layout(location = 4) in vec2 uv;
+layout(location = 2, component = 3) in float uv_y;
 #ifdef VERTEX_COLORS
-layout(location = 5) in vec4 vertex_color;
+layout(location = 3) in vec4 vertex_color;
 #else
 const vec4 vertex_color = vec4(1.0);
 #endif
 
 layout(location = 0) out vec4 color;
+
+float handedness = signed_by_handedness > 0.0 ? 1.0 : -1.0;
+vec2 uv = vec2(uv_x, uv_y);
 
 // Which side of the surface is seen, as a factor of its normals.
 float side() { return gl_FrontFacing ? 1.0 : draw.back_normals; }

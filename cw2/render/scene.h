@@ -55,7 +55,7 @@ class Scene {
     /// Uploads the contents of the textures; then the file is not needed any more. Throws
     /// VulkanError.
     void write_textures(const Device& device, const SceneFile& file) {
-        textures_.write(device, file.document);
+        textures_.write(device, file);
     }
 
     const Bounds& bounds() const { return bounds_; }

@@ -1,5 +1,8 @@
 #include "cw2/render/scene_file.h"
 
+#include <tbb/parallel_for.h>
+
+#include <cstddef>
 #include <cstring>
 #include <new>
 #include <span>
@@ -12,7 +15,13 @@ namespace cw2 {
 namespace {
 
 void read(SceneFile& file, std::span<const std::byte> bytes, const std::string& name) {
-    file.document = mesh_format::parse(bytes, name);
+    using mesh_format::Payloads;
+    file.document = mesh_format::parse(bytes, name, Payloads::unchecked);
+    tbb::parallel_for(std::size_t{0}, file.document.textures.size(), [&](std::size_t i) {
+        mesh_format::check_payload(file.document, i, name);
+        // All of them need not be in memory beside what becomes of them.
+        file.forget(file.document.textures[i]);
+    });
     file.decoded = mesh_format::decode(file.document, name);
     file.positions = vertex_positions(file.document);
     file.bounds = bounds_of(file.document.scene, file.positions);

@@ -23,6 +23,11 @@ struct SceneFile {
     std::vector<glm::vec3> positions;  ///< of all vertices, mesh after mesh
     Bounds bounds;                     ///< refers to the positions
     SceneStart start;
+
+    /// The payload of a texture is not needed for now.
+    void forget(const mesh_format::TextureRecord& texture) const {
+        if (mapped) mapped->forget(document.payload(texture));
+    }
 };
 
 /// Throws common::FileError or mesh_format::FormatError.

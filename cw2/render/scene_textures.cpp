@@ -264,7 +264,17 @@ TexelBlock SceneTextures::texel_block(const Texture& texture) const {
                : TexelBlock{mesh_format::block_extent(format), mesh_format::block_bytes(format)};
 }
 
-void SceneTextures::write(const Device& device, const Document& document) const {
+/// What it was made of.
+void SceneTextures::forget(const SceneFile& file, const Texture& texture) {
+    const MergedMaps maps =
+        texture.merged.value_or(MergedMaps{texture.stored, kNoTexture, kNoTexture});
+    for (const std::uint32_t map : {maps.normal, maps.roughness, maps.metalness}) {
+        if (map != kNoTexture) file.forget(file.document.textures[map]);
+    }
+}
+
+void SceneTextures::write(const Device& device, const SceneFile& file) const {
+    const Document& document = file.document;
     std::optional<Uploader> uploader;
     for (const Texture& texture : textures_) {
         if (!texture.image) continue;
@@ -281,6 +291,7 @@ void SceneTextures::write(const Device& device, const Document& document) const 
                     document, texture,
                     {level, 0, row_count(level), texture.address + place.offset, place.pitch});
             }
+            forget(file, texture);
             continue;
         }
         if (!uploader) uploader.emplace(device);
@@ -292,6 +303,7 @@ void SceneTextures::write(const Device& device, const Document& document) const 
                     std::size_t{(width + block.extent - 1) / block.extent} * block.bytes;
                 write_level(document, texture, {level, first, count, out, pitch});
             });
+        forget(file, texture);
     }
     if (uploader) uploader->finish();
 }

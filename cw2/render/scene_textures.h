@@ -10,6 +10,7 @@
 #include <set>
 #include <vector>
 
+#include "cw2/render/scene_file.h"
 #include "cw2/render/texel_rows.h"
 #include "cw2/vulkan/device.h"
 #include "cw2/vulkan/handle.h"
@@ -36,7 +37,7 @@ class SceneTextures {
                   const TextureSettings& settings, const std::vector<std::uint32_t>& first_levels);
 
     /// Writes the contents. Images that the host writes are left alone by the queue meanwhile.
-    void write(const Device& device, const mesh_format::Document& document) const;
+    void write(const Device& device, const SceneFile& file) const;
 
     /// Whether the normal map of a material holds roughness and metalness, too.
     bool has_merged_maps(std::size_t material) const { return merged_of_material_[material] != 0; }
@@ -65,6 +66,7 @@ class SceneTextures {
     bool is_decoded(const Texture& texture) const;
     TexelBlock texel_block(const Texture& texture) const;
     void make_images(const Device& device, const mesh_format::Document& document);
+    static void forget(const SceneFile& file, const Texture& texture);
     void write_level(const mesh_format::Document& document, const Texture& texture,
                      const Rows& rows) const;
     void write_rows(const mesh_format::Document& document, const Texture& texture,
