@@ -7,10 +7,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "common/io.h"
 #include "common/signals.h"
@@ -49,6 +51,21 @@ TEST_F(Io, AMappedFileThatBecameShorterIsAnError) {
     EXPECT_EXIT(read_what_is_gone(folder_ / "file"), testing::ExitedWithCode(1),
                 "^program: .*/file: became shorter while it was read\n$");
     EXPECT_FALSE(fs::exists(folder_ / "file.left"));
+}
+
+TEST_F(Io, WhatIsForgottenOfAFileIsReadAnew) {
+    std::string text(100'000, 'x');
+    for (std::size_t i = 0; i < text.size(); ++i) text[i] = static_cast<char>('a' + i % 23);
+    write("file", text);
+    const common::MappedFile file(folder_ / "file");
+    for (const auto& [begin, size] : {std::pair<std::size_t, std::size_t>{0, 100'000},
+                                      {5'000, 60'000},
+                                      {4'096, 4'096},
+                                      {10, 20},
+                                      {99'999, 1}}) {
+        file.forget(file.bytes().subspan(begin, size));
+        EXPECT_EQ(std::memcmp(file.bytes().data(), text.data(), text.size()), 0) << begin;
+    }
 }
 
 void read_beyond_all_files() {
