@@ -77,7 +77,7 @@ class Materials : public testing::Test {
         GltfWriter gltf = square_gltf();
         std::vector<float> colors;
         for (const auto* const color : {&kLeft, &kRight, &kRight, &kLeft}) {
-            colors.insert(colors.end(), color->begin(), color->end());
+            for (const float channel : *color) colors.push_back(channel);
         }
         gltf.root["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
             gltf.accessor<float>(colors, kFloat, "VEC4");
