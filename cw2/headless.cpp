@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <future>
 #include <optional>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "common/io.h"
 #include "common/progress.h"
 #include "common/quoted_text.h"
+#include "cw2/bench.h"
 #include "cw2/options/frame_of.h"
 #include "cw2/render/averager.h"
 #include "cw2/render/image_file.h"
@@ -83,6 +85,16 @@ class OffscreenTarget {
         }
     }
 
+    /// What a frame is made of.
+    void count(Bench& bench, const Scene& scene, const FrameSettings& settings) {
+        begin_commands(commands_);
+        averager_.count_fragments(commands_, scene, settings, extent_);
+        submit_and_wait(device_, commands_);
+        bench.counts = averager_.renderer().counts();
+        bench.fragments = averager_.renderer().fragments();
+        bench.pipelines = averager_.renderer().pipeline_count();
+    }
+
     std::span<const std::byte> pixels() const { return pixels_.mapped; }
     std::uint32_t samples() const { return samples_; }
     /// Device time of the last picture's frames, 0 where the device has no timestamps.
@@ -106,26 +118,17 @@ struct Timings {
     double load = 0.0;         ///< file to device, milliseconds
     double first_frame = 0.0;  ///< pipelines, the picture's frames, read-back
     double save = 0.0;
-    std::vector<double> frames;      ///< pictures of --bench, wall clock
-    std::vector<double> gpu_frames;  ///< of --bench, device time
 };
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-std::string stats_of(const Device& device, const Scene& scene, const Timings& timings) {
+std::string stats_of(const Device& device, const Scene& scene, const Timings& timings,
+                     const std::optional<Bench>& bench, const PictureSize& size) {
     return fmt::format(
         "{{\n  \"device\": {},\n  \"triangles\": {},\n  \"draws\": {},\n"
         "  \"load_ms\": {:.3f},\n  \"first_frame_ms\": {:.3f},\n  \"save_ms\": {:.3f},\n"
-        "  \"bench_frames\": {},\n  \"median_frame_ms\": {:.3f},\n"
-        "  \"median_gpu_ms\": {:.3f}\n}}\n",
+        "  \"peak_memory_mib\": {:.1f}{}\n}}\n",
         common::quoted_text(device.properties().deviceName), scene.triangle_count(),
-        scene.draws().size(), timings.load, timings.first_frame, timings.save,
-        timings.frames.size(), median(timings.frames), median(timings.gpu_frames));
+        scene.draws().size(), timings.load, timings.first_frame, timings.save, peak_memory(),
+        bench ? json_of(*bench, size) : std::string());
 }
 
 /// Saves pictures on a thread of its own, while the next one is drawn.
@@ -176,6 +179,14 @@ std::filesystem::path file_of(const Options& options, std::uint32_t frame) {
     return frame_name(options.output->string(), frame).value_or(options.output->string());
 }
 
+/// Of --bench, the frame of a picture.
+FrameSettings bench_frame(const Options& options, const FrameSettings& start, std::uint32_t picture,
+                          const Bounds& bounds) {
+    if (!options.orbit) return start;
+    return at_frame(start, *options.orbit, picture, options.bench_pictures, bounds,
+                    options.orbit_axis);
+}
+
 /// A scene on its device, and what draws it into files.
 struct Studio {
     const Options& options;
@@ -219,16 +230,23 @@ struct Studio {
                                   1e-3 * milliseconds, 1e3 * range.size() / milliseconds));
     }
 
-    void measure(const FrameSettings& settings) {
-        for (std::uint32_t i = 0; i < options.bench_frames; ++i) {
+    Bench measure(const FrameSettings& settings) {
+        constexpr double kMilliseconds = 1e3 / CLOCKS_PER_SEC;
+        // What is built or compiled when it first draws.
+        target.render(scene, settings, [](std::uint32_t) {});
+        Bench bench;
+        for (std::uint32_t i = 0; i < options.bench_pictures; ++i) {
+            const FrameSettings now = bench_frame(options, settings, i, scene.bounds());
             const Clock::time_point start = Clock::now();
-            target.render(scene, settings, [](std::uint32_t) {});
-            timings.frames.push_back(milliseconds_since(start));
-            timings.gpu_frames.push_back(target.gpu_milliseconds());
+            const std::clock_t cpu_start = std::clock();
+            target.render(scene, now, [](std::uint32_t) {});
+            bench.wall.push_back(milliseconds_since(start));
+            bench.cpu.push_back(kMilliseconds * static_cast<double>(std::clock() - cpu_start));
+            bench.device.push_back(target.gpu_milliseconds());
         }
-        common::print(fmt::format("{} frames of {}x{}: median {:.2f} ms, device {:.2f} ms\n",
-                                  options.bench_frames, options.size.width, options.size.height,
-                                  median(timings.frames), median(timings.gpu_frames)));
+        target.count(bench, scene,
+                     bench_frame(options, settings, options.bench_pictures - 1, scene.bounds()));
+        return bench;
     }
 };
 
@@ -274,17 +292,21 @@ void print_pixel(const Device& device, const Layouts& layouts, const Scene& scen
 /// The cameras of all pictures of a run.
 std::vector<Camera> cameras_of(const Options& options, const FrameSettings& settings,
                                const Bounds& bounds) {
-    if (!options.frames) return {settings.camera};
-    const FrameRange& range = *options.frames;
-    std::vector<Camera> cameras;
-    for (std::uint32_t frame = range.first; frame <= range.last; ++frame)
-        cameras.push_back(at_frame(settings, options.orbit.value_or(Orbit::camera), frame,
-                                   range.count, bounds, options.orbit_axis)
-                              .camera);
+    std::vector<Camera> cameras{settings.camera};
+    if (options.frames) {
+        const FrameRange& range = *options.frames;
+        cameras.clear();
+        for (std::uint32_t frame = range.first; frame <= range.last; ++frame)
+            cameras.push_back(at_frame(settings, options.orbit.value_or(Orbit::camera), frame,
+                                       range.count, bounds, options.orbit_axis)
+                                  .camera);
+    }
+    for (std::uint32_t i = 0; options.orbit == Orbit::camera && i < options.bench_pictures; ++i)
+        cameras.push_back(bench_frame(options, settings, i, bounds).camera);
     return cameras;
 }
 
-/// Returns the statistics of what was drawn, empty for no picture.
+/// Returns the statistics of what was drawn, empty for nothing.
 std::string render(const Device& device, const Options& options, SceneFile file, Timings timings) {
     const Clock::time_point start = Clock::now();
     const std::optional<ImageKind> kind =
@@ -299,8 +321,9 @@ std::string render(const Device& device, const Options& options, SceneFile file,
                                       .anisotropy = textures.anisotropy}));
     std::optional<OffscreenTarget> target;
     std::future<void> rehearsal;
-    if (kind) {
-        target.emplace(device, layouts, options, *kind);
+    const bool draws = kind || options.bench_pictures > 0;
+    if (draws) {
+        target.emplace(device, layouts, options, kind.value_or(ImageKind::png));
         // On CPUs shaders are compiled when they first draw: beside the decoding of textures.
         if (device.is_cpu())
             rehearsal = std::async(std::launch::async, [&] { target->rehearse(scene, settings); });
@@ -311,11 +334,15 @@ std::string render(const Device& device, const Options& options, SceneFile file,
     timings.load += milliseconds_since(start);
 
     if (options.pixel) print_pixel(device, layouts, scene, options);
-    if (!kind) return {};
+    if (!draws) return {};
     Studio studio{options, scene, *target, timings};
-    options.frames ? studio.draw_turn(settings) : studio.draw_picture(settings);
-    if (options.bench_frames > 0) studio.measure(settings);
-    return stats_of(device, scene, timings);
+    if (kind) options.frames ? studio.draw_turn(settings) : studio.draw_picture(settings);
+    std::optional<Bench> bench;
+    if (options.bench_pictures > 0) {
+        bench = studio.measure(settings);
+        common::print(text_of(*bench, options.size, target->samples()));
+    }
+    return stats_of(device, scene, timings, bench, options.size);
 }
 
 }  // namespace

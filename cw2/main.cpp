@@ -34,7 +34,7 @@ int run(const cw2::Options& options) {
     }
     // A scene that is none is told before a device or a display is missed.
     if (!options.list_devices) const common::MappedFile exists(options.scene);
-    if (!options.list_devices && !options.output && !options.pixel) {
+    if (!options.list_devices && !options.output && !options.pixel && options.bench_pictures == 0) {
         return cw2::run_window(options, common::beside_program("../share/cw2"));
     }
 

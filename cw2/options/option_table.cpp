@@ -338,13 +338,14 @@ std::vector<Setting> all_settings() {
               "N pictures of one turn, or those from A to B of 0 to N - 1; %04d in --output is the "
               "frame's number",
               &O::frames),
-        value("orbit", "camera|light", "what goes around in --frames [camera]", &O::orbit),
+        value("orbit", "camera|light",
+              "what goes around in --frames [camera] and in --bench [nothing]", &O::orbit),
         value("pixel", "X,Y",
               "print what shades that pixel as JSON, with no window [0,0 is the upper left]",
               &O::pixel),
-        value("stats", "FILE.json", "write timings and counts as JSON (with --output)", &O::stats),
-        value("bench", "FRAMES", "draw N more frames and print their times (with --output)",
-              &O::bench_frames, in(kBenchRange)),
+        value("stats", "FILE.json", "write timings and counts as JSON", &O::stats),
+        value("bench", "N", "draw N pictures, with no window, and print what they take",
+              &O::bench_pictures, in(kBenchRange)),
     };
 }
 

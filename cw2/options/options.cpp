@@ -103,9 +103,9 @@ void require_sense(const Options& options) {
         throw UsageError(
             fmt::format("--output: '{}' ends in neither .png nor .exr", options.output->string()));
     }
-    if (!options.output && (options.stats || options.bench_frames > 0 || options.frames)) {
-        throw UsageError("--stats, --bench and --frames need --output");
-    }
+    if (!options.output && options.frames) throw UsageError("--frames needs --output");
+    if (!options.output && options.bench_pictures == 0 && options.stats)
+        throw UsageError("--stats needs --output or --bench");
     if (options.encoding == Encoding::linear && options.false_color) {
         throw UsageError("--encoding linear and --false-color exclude each other");
     }
@@ -118,7 +118,8 @@ void require_sense(const Options& options) {
         }
     }
     if (options.stats) {
-        for (const std::filesystem::path& other : {options.scene, *options.output}) {
+        for (const std::filesystem::path& other :
+             {options.scene, options.output.value_or(options.scene)}) {
             std::error_code ignored;
             if (*options.stats == other ||
                 std::filesystem::equivalent(*options.stats, other, ignored)) {
@@ -126,9 +127,10 @@ void require_sense(const Options& options) {
             }
         }
     }
-    if (!options.frames && options.orbit) throw UsageError("--orbit needs --frames");
+    if (!options.frames && options.bench_pictures == 0 && options.orbit)
+        throw UsageError("--orbit needs --frames or --bench");
     if (!options.frames) return;
-    if (options.bench_frames > 0) throw UsageError("--bench and --frames exclude each other");
+    if (options.bench_pictures > 0) throw UsageError("--bench and --frames exclude each other");
     if (options.frames->size() > 1 && !frame_name(options.output->string(), 0)) {
         throw UsageError(
             fmt::format("--output: '{}' is no pattern for several frames, such as name_%04d.png",

@@ -94,7 +94,7 @@ struct Options {
     std::optional<Orbit> orbit;        ///< in `frames`; none: the camera's
     std::optional<PixelPlace> pixel;   ///< whose numbers are printed
     std::optional<std::filesystem::path> stats;
-    std::uint32_t bench_frames = 0;  ///< further frames to time, in kBenchRange
+    std::uint32_t bench_pictures = 0;  ///< pictures to time, in kBenchRange
 
     bool operator==(const Options&) const = default;
 };

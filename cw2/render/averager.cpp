@@ -142,17 +142,12 @@ void Averager::dispatch(VkCommandBuffer commands, VkPipeline pipeline, VkExtent2
     vkCmdDispatch(commands, groups(extent.width), groups(extent.height), 1);
 }
 
-void Averager::record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
-                      const FrameSettings& settings, const PixelSample& sample, bool rehearses) {
-    renderer_.record(commands, slot, scene,
-                     {.image = frame_.handle.get(),
-                      .view = frame_.view.get(),
-                      .extent = extent_,
-                      .available_at = kComputed.stages,
-                      .after = kComputed,
-                      .sample = sample,
-                      .rehearses = rehearses},
-                     settings);
+FrameTarget Averager::target() const {
+    return {.image = frame_.handle.get(),
+            .view = frame_.view.get(),
+            .extent = extent_,
+            .available_at = kComputed.stages,
+            .after = kComputed};
 }
 
 void Averager::add_to_mean(VkCommandBuffer commands, VkExtent2D extent,
@@ -169,7 +164,9 @@ void Averager::add(VkCommandBuffer commands, std::uint32_t slot, const Scene& sc
                    const FrameSettings& settings, VkExtent2D extent, std::uint32_t index,
                    std::uint32_t count, bool clamps) {
     fit(extent);
-    record(commands, slot, scene, settings, pixel_sample(index, count), false);
+    FrameTarget target = this->target();
+    target.sample = pixel_sample(index, count);
+    renderer_.record(commands, slot, scene, target, settings);
     add_to_mean(
         commands, extent,
         {.weight = 1.0f / static_cast<float>(count), .starts = index == 0, .clamps = clamps});
@@ -178,9 +175,19 @@ void Averager::add(VkCommandBuffer commands, std::uint32_t slot, const Scene& sc
 void Averager::rehearse(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
                         const FrameSettings& settings, VkExtent2D extent) {
     fit(extent);
-    record(commands, slot, scene, settings, {}, true);
+    FrameTarget target = this->target();
+    target.rehearses = true;
+    renderer_.record(commands, slot, scene, target, settings);
     add_to_mean(commands, kOnePixel, {.weight = 1.0f, .starts = true});
     encode(commands, {}, kOnePixel);
+}
+
+void Averager::count_fragments(VkCommandBuffer commands, const Scene& scene,
+                               const FrameSettings& settings, VkExtent2D extent) {
+    fit(extent);
+    FrameTarget target = this->target();
+    target.counts_fragments = true;
+    renderer_.record(commands, 0, scene, target, settings);
 }
 
 VkImage Averager::encode(VkCommandBuffer commands, const PictureBytes& form) {

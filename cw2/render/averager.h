@@ -40,6 +40,11 @@ class Averager {
     void rehearse(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
                   const FrameSettings& settings, VkExtent2D extent);
 
+    /// Records a frame at the pixels' centres whose fragments are counted, see
+    /// Renderer::fragments(). What there is of a mean stays.
+    void count_fragments(VkCommandBuffer commands, const Scene& scene,
+                         const FrameSettings& settings, VkExtent2D extent);
+
     /// Records the making of the mean's bytes; the image, R8G8B8A8_UNORM, is then ready to be
     /// copied from.
     VkImage encode(VkCommandBuffer commands, const PictureBytes& form);
@@ -53,8 +58,8 @@ class Averager {
 
  private:
     void fit(VkExtent2D extent);
-    void record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
-                const FrameSettings& settings, const PixelSample& sample, bool rehearses);
+    /// Where a frame is drawn.
+    FrameTarget target() const;
     /// Of the pixels of `extent`, and of some beside them.
     void add_to_mean(VkCommandBuffer commands, VkExtent2D extent,
                      const interop::AverageConstants& constants);

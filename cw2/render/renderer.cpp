@@ -40,14 +40,27 @@ void require_samples(const Device& device, VkFormat format, VkImageUsageFlags us
     }
 }
 
-QueryPool make_timestamps(const Device& device, std::uint32_t count) {
-    if (device.timestamp_bits() == 0) return {};
-    const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                     .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                     .queryCount = count};
+QueryPool make_query_pool(const Device& device, const VkQueryPoolCreateInfo& info) {
     VkQueryPool pool = VK_NULL_HANDLE;
     check(vkCreateQueryPool(device.get(), &info, nullptr, &pool), "vkCreateQueryPool");
     return {device.get(), pool};
+}
+
+QueryPool make_timestamps(const Device& device, std::uint32_t count) {
+    if (device.timestamp_bits() == 0) return {};
+    return make_query_pool(device, {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                    .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                    .queryCount = count});
+}
+
+QueryPool make_fragment_counter(const Device& device) {
+    if (!device.counts_fragments()) return {};
+    return make_query_pool(
+        device,
+        {.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+         .queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS,
+         .queryCount = 1,
+         .pipelineStatistics = VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT});
 }
 
 interop::SceneUniforms scene_uniforms(const Scene& scene, const FrameTarget& target,
@@ -150,7 +163,8 @@ Renderer::Renderer(const Device& device, const Layouts& layouts, const ShaderCod
       layouts_(layouts),
       formats_{color_format, kDepthFormat, samples},
       pipelines_(device, layouts, code, formats_),
-      timestamps_(make_timestamps(device, 2 * slots)) {
+      timestamps_(make_timestamps(device, 2 * slots)),
+      fragments_(make_fragment_counter(device)) {
     require_samples(device, color_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, samples);
     require_samples(device, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, samples);
     make_slots(slots);
@@ -339,9 +353,15 @@ void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene&
     if (rehearses_) leave_one_chunk_per_material(scene);
     if (timestamps_) vkCmdResetQueryPool(commands, timestamps_.get(), 2 * slot, 2);
     write_timestamp(commands, VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, 2 * slot);
+    const bool counts_fragments = target.counts_fragments && fragments_;
+    if (counts_fragments) {
+        vkCmdResetQueryPool(commands, fragments_.get(), 0, 1);
+        vkCmdBeginQuery(commands, fragments_.get(), 0, 0);
+    }
     begin_attachments(commands, target, settings);
     draw_sides(commands, slots_[slot].set, scene, target, settings);
     vkCmdEndRendering(commands);
+    if (counts_fragments) vkCmdEndQuery(commands, fragments_.get(), 0);
     counts_.new_pipelines = pipelines_.built() != built_before;
     write_timestamp(commands, VK_PIPELINE_STAGE_2_BOTTOM_OF_PIPE_BIT, 2 * slot + 1);
     // Resolving, too, is a colour attachment write.
@@ -358,6 +378,15 @@ std::optional<double> Renderer::gpu_milliseconds(std::uint32_t slot) const {
     if (result != VK_SUCCESS) return std::nullopt;
     return static_cast<double>(elapsed_ticks(ticks[0], ticks[1], device_.timestamp_bits())) *
            static_cast<double>(device_.properties().limits.timestampPeriod) * 1e-6;
+}
+
+std::optional<std::uint64_t> Renderer::fragments() const {
+    if (!fragments_) return std::nullopt;
+    std::uint64_t count = 0;
+    const VkResult result =
+        vkGetQueryPoolResults(device_.get(), fragments_.get(), 0, 1, sizeof count, &count,
+                              sizeof count, VK_QUERY_RESULT_64_BIT);
+    return result == VK_SUCCESS ? std::optional(count) : std::nullopt;
 }
 
 }  // namespace cw2

@@ -34,6 +34,7 @@ struct FrameTarget {
     /// Nothing is seen: a triangle for each material is drawn and culled, so that a device that
     /// compiles shaders when they first draw does it. Reads no texture.
     bool rehearses = false;
+    bool counts_fragments = false;  ///< see Renderer::fragments()
 };
 
 /// What is left of a scene after culling.
@@ -69,6 +70,10 @@ class Renderer {
     /// Device time of the slot's last frame, once it is done; nothing where the device has no
     /// timestamps.
     std::optional<double> gpu_milliseconds(std::uint32_t slot) const;
+    /// How many fragments the last frame that counted them has shaded, once it is done, as the
+    /// device counts them (lavapipe: hidden ones, too); nothing where it cannot.
+    std::optional<std::uint64_t> fragments() const;
+    std::size_t pipeline_count() const { return pipelines_.built(); }
 
  private:
     struct Slot {
@@ -95,6 +100,7 @@ class Renderer {
     DescriptorPool descriptor_pool_;
     std::vector<Slot> slots_;
     QueryPool timestamps_;                ///< two a slot; empty where the device has none
+    QueryPool fragments_;                 ///< one; empty where the device cannot count
     std::vector<std::uint32_t> visible_;  ///< chunks of the frame at hand
     bool rehearses_ = false;              ///< the frame at hand, see FrameTarget
     FrameCounts counts_;

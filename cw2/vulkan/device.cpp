@@ -347,7 +347,9 @@ Device::Device(const Instance& instance, const std::optional<std::string>& selec
                                        .pNext = &features13};
     features.features.samplerAnisotropy = supported.samplerAnisotropy;
     features.features.textureCompressionBC = supported.textureCompressionBC;
+    features.features.pipelineStatisticsQuery = supported.pipelineStatisticsQuery;
     samples_blocks_ = supported.textureCompressionBC;
+    counts_fragments_ = supported.pipelineStatisticsQuery;
     VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                             .pNext = &features,
                             .queueCreateInfoCount = 1,

@@ -96,6 +96,8 @@ class Device {
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     /// Whether images may be in the formats BC1 to BC5.
     bool samples_blocks() const { return samples_blocks_; }
+    /// Whether queries may ask for pipeline statistics.
+    bool counts_fragments() const { return counts_fragments_; }
     bool is_cpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
 
     /// How many bits of a timestamp count on the queue; 0 where it has none.
@@ -121,6 +123,7 @@ class Device {
     std::uint32_t queue_family_ = 0;
     std::uint32_t timestamp_bits_ = 0;
     bool samples_blocks_ = false;
+    bool counts_fragments_ = false;
     PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr;
     LogicalDevice device_;
     VkQueue queue_ = VK_NULL_HANDLE;

@@ -269,7 +269,7 @@ TEST_F(Cli, Cw2RefusesWrongUsage) {
         arguments.insert(arguments.end(), options.begin(), options.end());
         expect_refusal("cw2", 2, arguments, parts);
     }
-    expect_refusal("cw2", 2, {"scene.cw2mesh", "--bench", "3"}, {"--output"});
+    expect_refusal("cw2", 2, {"scene.cw2mesh", "--stats", "a.json"}, {"--output", "--bench"});
     expect_refusal("cw2", 2, {"scene.cw2mesh", "--frames", "3"}, {"--output"});
 }
 

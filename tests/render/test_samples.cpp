@@ -21,6 +21,7 @@
 #include "tests/render/drawing.h"
 #include "tests/render/loaded_scene.h"
 #include "tests/render/srgb_truth.h"
+#include "tests/support/process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {
@@ -333,6 +334,55 @@ TEST(TouchedLevels, GiveTheSamePictureAsAll) {
     // The bound is of use: it leaves levels out, and three more are missed from nearly everywhere.
     EXPECT_GE(left_out, 12u);
     EXPECT_GE(changed_without_more, 9u);
+}
+
+TEST(Bench, SaysWhatAPictureTakes) {
+    const TemporaryFolder folder;
+    // Two walls that fill the view, one behind the other.
+    std::ofstream(folder / "walls.mtl") << "newmtl near\nnewmtl far\n";
+    std::ofstream(folder / "walls.obj")
+        << "mtllib walls.mtl\nusemtl near\nv -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nf 1 2 3 4\n"
+           "v -9 -9 -1\nv 9 -9 -1\nv 9 9 -1\nv -9 9 -1\nusemtl far\nf 5 6 7 8\n";
+    const std::filesystem::path scene = bake_scene(folder / "walls.obj");
+    const auto number = [&](const std::string& name) {
+        std::ifstream file(folder / "stats.json");
+        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        const std::size_t at = text.find('"' + name + "\": ");
+        return at == text.npos ? -1.0 : std::stod(text.substr(at + name.size() + 4));
+    };
+    for (const std::string orbit : {"", "camera"}) {
+        std::vector<std::string> command{CW2_PROGRAM,
+                                         scene,
+                                         "--camera-position",
+                                         "0,0,5",
+                                         "--camera-target",
+                                         "0,0,0",
+                                         "--size",
+                                         "64x48",
+                                         "--bench",
+                                         "5",
+                                         "--stats",
+                                         folder / "stats.json",
+                                         "--validation"};
+        if (!orbit.empty()) command.insert(command.end(), {"--orbit", orbit});
+        const Outcome outcome = run(command);
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        EXPECT_NE(outcome.out.find("5 pictures of 64x48, 4 frames each"), std::string::npos);
+        EXPECT_EQ(number("bench_pictures"), 5.0);
+        EXPECT_EQ(number("frame_triangles"), 4.0);
+        EXPECT_EQ(number("pipelines"), 1.0);
+        for (const char* what : {"wall", "cpu"}) {
+            const double median = number(what + std::string("_median_ms"));
+            EXPECT_GT(median, 0.0);
+            EXPECT_GE(number(what + std::string("_95_ms")), median);
+        }
+        EXPECT_GT(number("peak_memory_mib"), 1.0);
+        // Both walls are drawn all over the picture, and quads at their diagonals twice; at the
+        // last picture of a turn they are seen from aside. Lavapipe counts what is hidden, too.
+        EXPECT_GE(number("fragments_per_pixel"), orbit.empty() ? 1.0 : 0.1);
+        EXPECT_LE(number("fragments_per_pixel"), orbit.empty() ? 3.0 : 1.9);
+    }
 }
 
 }  // namespace
