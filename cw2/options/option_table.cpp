@@ -128,9 +128,10 @@ bool read_value(std::string_view text, std::optional<T>& value) {
 // Numbers are written with as many digits as it takes to read the same number again.
 template <typename T>
 requires std::is_arithmetic_v<T> std::string toml_of(T value) {
-    // With a point, since the integer -0 is 0.
-    if constexpr (std::is_floating_point_v<T>) return fmt::format("{:#}", value);
-    return fmt::format("{}", value);
+    std::string text = fmt::format("{}", value);
+    // With a point, since the integer -0 is 0; fmt's own ways to ask for one differ by version.
+    if (std::is_floating_point_v<T> && text.find_first_of(".e") == text.npos) text += ".0";
+    return text;
 }
 template <typename T>
 std::string toml_of(const glm::vec<3, T>& v) {

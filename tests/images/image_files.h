@@ -18,6 +18,7 @@ inline void write_image(const std::filesystem::path& path, int width, int height
                         const std::string& attribute = "", const std::string& value = "") {
     OIIO::ImageSpec spec(width, height, channels, type);
     spec["oiio:UnassociatedAlpha"] = 1;
+    spec["pnm:pfmflip"] = 0;  // version 2.5 writes the floats of any PNM upside down
     if (!attribute.empty()) {
         spec.attribute(attribute, value);
     }
