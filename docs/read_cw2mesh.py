@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads .cw2mesh files of format version 4, as docs/format.md describes them.
+"""Reads .cw2mesh files of format version 5, as docs/format.md describes them.
 
     import read_cw2mesh
     scene = read_cw2mesh.read("model.cw2mesh")
@@ -15,7 +15,7 @@ import math
 import struct
 import sys
 
-VERSION = 4
+VERSION = 5
 SECTIONS = ("scene", "meshes", "chunks", "materials", "textures", "sources", "strings", "vertices",
             "indices", "texels", "encoded_vertices", "encoded_indices")
 MAP_USES = ("base_color", "roughness", "metalness", "normal", "alpha_mask", "emission")

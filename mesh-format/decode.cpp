@@ -5,8 +5,12 @@
 #include <tbb/parallel_for.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cstring>
+#include <memory>
 #include <span>
+
+#include "mesh-format/vertex_stream.h"
 
 namespace mesh_format {
 
@@ -14,7 +18,8 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-// Real scenes shrink to a tenth; a small file must not claim all memory.
+// A small file must not claim all memory. The geometry of a flat grid may shrink to next to
+// nothing; its table of chunks, which is not compressed, is the 200th part of it.
 constexpr std::uint64_t kLargestRatio = 1000;
 
 /// The parts of an encoded section, one a mesh; their sizes have been checked.
@@ -30,66 +35,82 @@ std::vector<Bytes> parts_of(Bytes section, std::size_t count) {
     return parts;
 }
 
-/// The stream in a Zstandard frame, if it is one of at most `largest` bytes.
-std::vector<unsigned char> unwrap(Bytes frame, std::size_t largest, bool& sound) {
-    const auto size = ZSTD_getFrameContentSize(frame.data(), frame.size());
-    sound = size <= largest;  // errors are the largest values
-    std::vector<unsigned char> stream(sound ? size : 0);
-    sound = sound && ZSTD_decompress(stream.data(), stream.size(), frame.data(), frame.size()) ==
-                         stream.size();
-    return stream;
+using Stream = std::unique_ptr<std::byte[]>;
+
+/// Whether the Zstandard frame holds exactly `size` bytes, which then are in `stream`.
+bool unwrap(Bytes frame, std::size_t size, Stream& stream) {
+    stream = std::make_unique_for_overwrite<std::byte[]>(size);
+    return ZSTD_decompress(stream.get(), size, frame.data(), frame.size()) == size;
 }
 
-bool decode_vertices(const MeshRecord& mesh, Bytes part, std::byte* out) {
-    const std::size_t stride = vertex_layout(mesh.forms).stride;
-    const std::size_t padded = (stride + 3) / 4 * 4;
-    bool sound = true;
-    const auto stream =
-        unwrap(part, meshopt_encodeVertexBufferBound(mesh.vertex_count, padded), sound);
-    std::vector<std::byte> vertices(mesh.vertex_count * padded);
-    if (!sound || meshopt_decodeVertexBuffer(vertices.data(), mesh.vertex_count, padded,
-                                             stream.data(), stream.size()) != 0) {
-        return false;
-    }
-    for (std::size_t i = 0; i < mesh.vertex_count; ++i) {
-        std::memcpy(out + i * stride, vertices.data() + i * padded, stride);
-    }
-    return true;
+bool decode_indices(const MeshRecord& mesh, Bytes part, std::span<std::uint16_t> out) {
+    const auto size = ZSTD_getFrameContentSize(part.data(), part.size());
+    // Errors are the largest values.
+    if (size > meshopt_encodeIndexBufferBound(mesh.index_count, mesh.vertex_count)) return false;
+    Stream stream;
+    return unwrap(part, size, stream) &&
+           meshopt_decodeIndexBuffer(out.data(), out.size(),
+                                     reinterpret_cast<const unsigned char*>(stream.get()),
+                                     size) == 0 &&
+           std::ranges::max(out) < mesh.vertex_count;
 }
 
-bool decode_indices(const MeshRecord& mesh, Bytes part, std::uint16_t* out) {
-    bool sound = true;
-    const auto stream =
-        unwrap(part, meshopt_encodeIndexBufferBound(mesh.index_count, mesh.vertex_count), sound);
-    return sound &&
-           meshopt_decodeIndexBuffer(out, mesh.index_count, stream.data(), stream.size()) == 0;
+bool decode_vertices(const MeshRecord& mesh, Bytes part, std::span<const std::uint16_t> indices,
+                     std::byte* out) {
+    Stream stream;
+    return unwrap(part, vertex_stream_bytes(mesh), stream) &&
+           decode_vertices(mesh, indices, stream.get(), out);
+}
+
+/// Where a mesh's part of the section ends.
+std::uint64_t vertex_end(const MeshRecord& mesh) {
+    return mesh.vertex_offset + std::uint64_t{mesh.vertex_count} * vertex_layout(mesh.forms).stride;
+}
+std::uint64_t index_end(const MeshRecord& mesh) {
+    return mesh.first_index + mesh.index_count;
 }
 
 }  // namespace
 
 DecodedGeometry decode(Document& document, std::string_view name) {
     if (!document.is_encoded()) return {};
-    const std::uint64_t stored = document.encoded_vertices.size() + document.encoded_indices.size();
+    const std::uint64_t stored = document.encoded_vertices.size() +
+                                 document.encoded_indices.size() + document.chunks.size_bytes();
     const std::uint64_t claimed = document.scene.vertex_bytes / kLargestRatio +
                                   document.scene.index_count / kLargestRatio * 2;
     if (claimed > stored) {
         throw FormatError(fmt::format("{}: the scene's sizes are implausible", name));
     }
-    DecodedGeometry geometry;
-    geometry.vertices.resize(document.scene.vertex_bytes);
-    geometry.indices.resize(document.scene.index_count);
+    DecodedGeometry geometry{
+        std::make_unique_for_overwrite<std::byte[]>(document.scene.vertex_bytes),
+        std::make_unique_for_overwrite<std::uint16_t[]>(document.scene.index_count)};
     const std::size_t count = document.meshes.size();
     const std::vector<Bytes> vertices = parts_of(document.encoded_vertices, count);
     const std::vector<Bytes> indices = parts_of(document.encoded_indices, count);
+    // The tasks are the first to touch this memory, each its mesh's and what lies before that.
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         const MeshRecord& mesh = document.meshes[i];
-        if (!decode_vertices(mesh, vertices[i], geometry.vertices.data() + mesh.vertex_offset) ||
-            !decode_indices(mesh, indices[i], geometry.indices.data() + mesh.first_index)) {
+        const bool is_first = i == 0;
+        std::byte* const mesh_vertices = geometry.vertices.get() + mesh.vertex_offset;
+        const std::span mesh_indices(geometry.indices.get() + mesh.first_index, mesh.index_count);
+        std::fill(geometry.vertices.get() + (is_first ? 0 : vertex_end(document.meshes[i - 1])),
+                  mesh_vertices, std::byte{0});
+        std::fill(geometry.indices.get() + (is_first ? 0 : index_end(document.meshes[i - 1])),
+                  mesh_indices.data(), std::uint16_t{0});
+        if (vertex_layout(mesh.forms).has_gaps)
+            std::fill(mesh_vertices, geometry.vertices.get() + vertex_end(mesh), std::byte{0});
+        if (!decode_indices(mesh, indices[i], mesh_indices) ||
+            !decode_vertices(mesh, vertices[i], mesh_indices, mesh_vertices)) {
             throw FormatError(fmt::format("{}: mesh {}: its encoded geometry is damaged", name, i));
         }
     });
-    document.vertices = geometry.vertices;
-    document.indices = geometry.indices;
+    const std::span all_vertices(geometry.vertices.get(), document.scene.vertex_bytes);
+    const std::span all_indices(geometry.indices.get(), document.scene.index_count);
+    const MeshRecord& last = document.meshes.back();
+    std::ranges::fill(all_vertices.subspan(vertex_end(last)), std::byte{0});
+    std::ranges::fill(all_indices.subspan(index_end(last)), std::uint16_t{0});
+    document.vertices = all_vertices;
+    document.indices = all_indices;
     document.encoded_vertices = {};
     document.encoded_indices = {};
     check(document, name);

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string_view>
-#include <vector>
 
 #include "mesh-format/file.h"
 
@@ -13,13 +13,14 @@ namespace mesh_format {
 
 /// What the sections vertices and indices of an encoded document decode to.
 struct DecodedGeometry {
-    std::vector<std::byte> vertices;
-    std::vector<std::uint16_t> indices;
+    std::unique_ptr<std::byte[]> vertices;
+    std::unique_ptr<std::uint16_t[]> indices;
 };
 
 /// Decodes an encoded document mesh by mesh, in parallel, and checks the result, which `document`
 /// then refers to; leaves any other as it is. Throws FormatError, which calls the file `name`,
-/// where the sections are damaged, or claim to be more than a thousand times their stored size.
+/// where the sections are damaged, or claim to be more than a thousand times the size of what is
+/// stored of them and of the chunks.
 DecodedGeometry decode(Document& document, std::string_view name);
 
 }  // namespace mesh_format

@@ -17,9 +17,9 @@
 //              of each, the section's own is 0
 //   encoded vertices, encoded indices
 //              in a compressed file, what becomes the sections vertices and indices, which are
-//              then empty: uint32[], the stored size of each mesh's part, then those parts. A part
-//              is a Zstandard frame around a stream of meshoptimizer's vertex codec (vertices
-//              zero-padded to a multiple of 4 bytes) or index codec.
+//              then empty: uint32[], the stored size of each mesh's part, then those parts, each a
+//              Zstandard frame. The indices' holds a stream of meshoptimizer's index codec, the
+//              vertices' a vertex stream, see FrameModel
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ namespace mesh_format {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 inline constexpr std::array<char, 8> kMagic{'C', 'W', '2', 'M', 'E', 'S', 'H', '\0'};
-inline constexpr std::uint32_t kVersion = 4;
+inline constexpr std::uint32_t kVersion = 5;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 /// A mesh's vertices are addressed by 16-bit indices.
 inline constexpr std::uint32_t kMaxMeshVertices = 65'536;
@@ -92,6 +92,29 @@ enum class FrameForm : std::uint8_t {
     quat32,  ///< 2 x uint16
     half3,   ///< 3 x IEEE half, the handedness in bit 14 of the first
     f32,     ///< 4 x float, the handedness in the sign of w
+};
+
+/// A mesh's vertices in a compressed file are one byte, a FrameModel, and planes of one byte a
+/// vertex. The vertex's parts follow each other: position, UV, colour, frame. A part of k numbers
+/// of n bytes each has k n planes: the lowest byte of the first number, of the second, ..., then
+/// the next bytes. A number stands for how much the vertex's differs from an expected one, d modulo
+/// 256^n: as 2 d, or as -2 d - 1 if d is negative. Expected is a + b - c, the numbers of the three
+/// Neighbours in vertex_prediction.h; 0 for vertex 0. The bits of a float count as a number once
+/// the first, or in negative floats all of them, are inverted.
+///
+/// A frame in digits, see tangent_frame.h, has seven planes. The first holds the number of the
+/// largest component, + 4 if left-handed, xor that of neighbour a (of vertex 0: xor 0). Then come
+/// three numbers of two bytes as above, but d is modulo the levels of a digit, 32,768 or 811, and
+/// the smallest such. They are of the digits in their order, or else of those but others[partner()]
+/// and last of that one. Expected is what FrameModel says.
+enum class FrameModel : std::uint8_t {
+    /// Of each digit a + b - c modulo 2^16, or FrameCode::rebased() of a where not all three have
+    /// this vertex's largest component; of vertex 0 the digit of ratio 0. The one for other forms.
+    neighbours,
+    x_tangent,  ///< the same, but others[partner()] last: FrameCode::of_x_tangent()
+    /// As x_tangent, but the first two FrameCode::of_normal() of sum_normals(), unless the largest
+    /// component is y or z. Only for quantised positions.
+    x_tangent_of_positions,
 };
 
 /// How a vertex holds its texture coordinate; v = 0 is the top row of the image.

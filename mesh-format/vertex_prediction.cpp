@@ -1,0 +1,260 @@
+#include "mesh-format/vertex_prediction.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <utility>
+
+#include "mesh-format/frame_constants.h"
+
+namespace mesh_format {
+
+namespace {
+
+/// Finds the neighbours of one vertex after the other.
+class NeighbourFinder {
+ public:
+    explicit NeighbourFinder(std::uint32_t vertex_count)
+        : neighbours_(vertex_count), last_(vertex_count) {
+        for (std::uint32_t v = 0; v < vertex_count; ++v) {
+            neighbours_[v] = as(static_cast<std::uint16_t>(v > 0 ? v - 1 : 0));
+            // No edge goes there.
+            last_[v] = {static_cast<std::uint16_t>(v), static_cast<std::uint16_t>(v)};
+        }
+    }
+
+    void add(const std::uint16_t (&triangle)[3]) {
+        while (std::max({triangle[0], triangle[1], triangle[2]}) >= next_) add_vertex(triangle);
+        for (std::size_t i = 0; i < 3; ++i)
+            last_[triangle[i]] = {triangle[(i + 1) % 3], triangle[(i + 2) % 3]};
+    }
+
+    std::vector<Neighbours> take() { return std::move(neighbours_); }
+
+ private:
+    struct Edge {
+        std::uint16_t x, y;
+    };
+
+    static Neighbours as(std::uint16_t a) { return {a, a, a}; }
+
+    /// The smallest that is new.
+    void add_vertex(const std::uint16_t (&triangle)[3]) {
+        std::size_t corner = 3;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const bool is_new = triangle[i] >= next_;
+            if (is_new && (corner == 3 || triangle[i] < triangle[corner])) corner = i;
+        }
+        const std::uint16_t v = triangle[corner];
+        const std::uint16_t x = triangle[(corner + 1) % 3];
+        const std::uint16_t y = triangle[(corner + 2) % 3];
+        next_ = v + 1u;
+        if (x < v && y < v) {
+            neighbours_[v] = across(v, x, y);
+        } else if (x < v || y < v) {
+            neighbours_[v] = as(x < v ? x : y);
+        }
+    }
+
+    Neighbours across(std::uint16_t v, std::uint16_t x, std::uint16_t y) const {
+        std::uint16_t c = v;
+        if (last_[x].x == y) {
+            c = last_[x].y;
+        } else if (last_[x].y == y) {
+            c = last_[x].x;
+        } else if (last_[y].x == x) {
+            c = last_[y].y;
+        } else if (last_[y].y == x) {
+            c = last_[y].x;
+        }
+        return c < v ? Neighbours{x, y, c} : as(x);
+    }
+
+    std::vector<Neighbours> neighbours_;
+    std::vector<Edge> last_;  // by vertex: those that follow it in its last triangle
+    std::uint32_t next_ = 0;  // vertices before it are not new
+};
+
+// --- Ratios of quat48 and quat32
+// ------------------------------------------------------------------
+
+constexpr int kOne = 32'768;
+constexpr int kAngles = 16'383;  // in 45 degrees, as many as quat48 has
+constexpr int kSecantStep = 8;
+
+/// Of every angle from 0 to 45 degrees its tangent, and of every tangent the angle; of some
+/// tangents the secant.
+struct Ratios {
+    std::array<std::uint16_t, kAngles + 1> ratio;
+    std::array<std::uint16_t, kOne + 1> angle;
+    std::array<std::uint16_t, kOne / kSecantStep + 1> secant;
+
+    Ratios() {
+        for (int a = 0; a <= kAngles; ++a) ratio[static_cast<std::size_t>(a)] = ratio_of(a);
+        std::uint16_t a = 0;
+        for (std::size_t r = 0; r < angle.size(); ++r) {
+            while (ratio[a] < r) ++a;
+            angle[r] = a;
+        }
+        std::uint32_t root = kOne;
+        for (std::uint32_t r = 0; r <= kOne; r += kSecantStep) {
+            while (root * root < kOne * std::uint32_t{kOne} + r * r) ++root;
+            secant[r / kSecantStep] = static_cast<std::uint16_t>(root);
+        }
+    }
+
+ private:
+    /// By the polynomial of frame_constants.h, in units of 2^-30.
+    static std::uint16_t ratio_of(int a) {
+        constexpr std::int64_t kUnit = 1 << 30;
+        const auto units = [](double value) { return static_cast<std::int64_t>(value * kUnit); };
+        const std::int64_t coefficients[] = {units(kTanQ4), units(kTanQ3), units(kTanQ2),
+                                             units(kTanQ1), units(kTanQ0)};
+        const std::int64_t x = kUnit * a / kAngles;
+        const std::int64_t y = x * x / kUnit;
+        std::int64_t q = units(kTanQ5);
+        for (const std::int64_t coefficient : coefficients) q = q * y / kUnit + coefficient;
+        const std::int64_t tangent = x * (kUnit - (kUnit - y) * q / kUnit) / kUnit;
+        return static_cast<std::uint16_t>((tangent + kUnit / kOne / 2) * kOne / kUnit);
+    }
+};
+
+const Ratios& ratios() {
+    static const Ratios instance;
+    return instance;
+}
+
+template <FrameForm kForm>
+int ratio_of(int digit) {
+    using Code = FrameCode<kForm>;
+    const int level = std::min(digit, 2 * Code::kZero) - Code::kZero;
+    int angle = std::abs(level);
+    if (!Code::kWide) angle = (angle * kAngles + Code::kZero / 2) / Code::kZero;
+    const int ratio = ratios().ratio[static_cast<std::size_t>(angle)];
+    return level < 0 ? -ratio : ratio;
+}
+
+/// The digit of a component whose ratio to the largest is the tangent of `angle`.
+template <FrameForm kForm>
+int digit_of_angle(int angle) {
+    using Code = FrameCode<kForm>;
+    int level = std::abs(angle);
+    if (!Code::kWide) level = (level * Code::kZero + kAngles / 2) / kAngles;
+    return Code::kZero + (angle < 0 ? -level : level);
+}
+
+/// Of a ratio in [-kOne, kOne].
+template <FrameForm kForm>
+int digit_of(int ratio) {
+    const int angle = ratios().angle[static_cast<std::size_t>(std::abs(ratio))];
+    return digit_of_angle<kForm>(ratio < 0 ? -angle : angle);
+}
+
+struct Polar {
+    int angle;  ///< to the x axis, at most 90 degrees
+    int length;
+};
+
+/// Of (x, y), neither negative nor above 46,341.
+Polar polar(int x, int y) {
+    const int longer = std::max({x, y, 1});
+    const auto ratio = static_cast<std::size_t>(std::min(x, y) * kOne / longer);
+    const int angle = ratios().angle[ratio];
+    return {y > x ? 2 * kAngles - angle : angle,
+            longer * (ratios().secant[ratio / kSecantStep] / 2) / (kOne / 2)};
+}
+
+}  // namespace
+
+std::vector<Neighbours> find_neighbours(std::span<const std::uint16_t> indices,
+                                        std::uint32_t vertex_count) {
+    NeighbourFinder finder(vertex_count);
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+        finder.add({indices[i], indices[i + 1], indices[i + 2]});
+    return finder.take();
+}
+
+std::vector<Normal> sum_normals(std::span<const std::uint16_t> indices, std::uint32_t vertex_count,
+                                const std::byte* positions, std::size_t stride) {
+    std::vector<Normal> sums(vertex_count);
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+        std::array<std::array<std::uint16_t, 3>, 3> p;
+        for (std::size_t k = 0; k < 3; ++k)
+            std::memcpy(&p[k], positions + indices[i + k] * stride, sizeof p[k]);
+        std::array<std::int64_t, 3> u;
+        std::array<std::int64_t, 3> v;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            u[axis] = p[1][axis] - p[0][axis];
+            v[axis] = p[2][axis] - p[0][axis];
+        }
+        const Normal normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                            u[0] * v[1] - u[1] * v[0]};
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                std::int64_t& sum = sums[indices[i + k]][axis];
+                sum = static_cast<std::int64_t>(static_cast<std::uint64_t>(sum) +
+                                                static_cast<std::uint64_t>(normal[axis]));
+            }
+        }
+    }
+    return sums;
+}
+
+template <FrameForm kForm>
+std::array<std::int16_t, 3> FrameCode<kForm>::with_largest(const FrameDigits& frame,
+                                                           std::uint32_t largest) {
+    const std::uint32_t from = frame.top & 3u;
+    int q[4];
+    for (std::uint32_t i = 0, k = 0; i < 4; ++i)
+        q[i] = i == from ? kOne : ratio_of<kForm>(frame.others[k++]);
+    // It is not 0 where the two are neighbours on a smooth surface.
+    const int divisor = q[largest] == 0 ? 1 : q[largest];
+    std::array<std::int16_t, 3> others;
+    for (std::uint32_t i = 0, k = 0; i < 4; ++i) {
+        if (i == largest) continue;
+        const int ratio = std::clamp(q[i] * kOne / divisor, -kOne, kOne);
+        others[k++] = static_cast<std::int16_t>(digit_of<kForm>(ratio));
+    }
+    return others;
+}
+
+template <FrameForm kForm>
+int FrameCode<kForm>::of_x_tangent(const FrameDigits& frame) {
+    const std::uint32_t place = partner(frame.top & 3u);
+    const int u = ratio_of<kForm>(frame.others[place == 0 ? 1 : 0]);
+    const int v = ratio_of<kForm>(frame.others[place == 2 ? 1 : 2]);
+    return digit_of<kForm>(u * v / kOne);
+}
+
+// A frame whose tangent is the x axis, made orthogonal to the normal, is a turn by a about the x
+// axis after one by b, at most 90 degrees, about the y axis. Its quaternion is (sin a/2 cos b/2,
+// cos a/2 sin b/2, sin a/2 sin b/2, cos a/2 cos b/2), its normal (sin b, -sin a cos b, cos a cos
+// b).
+template <FrameForm kForm>
+std::array<std::int16_t, 3> FrameCode<kForm>::of_normal(const Normal& normal,
+                                                        std::uint32_t largest) {
+    std::array<std::uint64_t, 3> sizes;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto number = static_cast<std::uint64_t>(normal[k]);
+        sizes[k] = normal[k] < 0 ? 0 - number : number;
+    }
+    const int bits = static_cast<int>(std::bit_width(sizes[0] | sizes[1] | sizes[2]));
+    std::array<int, 3> n;
+    for (std::size_t k = 0; k < 3; ++k) n[k] = static_cast<int>(sizes[k] >> std::max(bits - 15, 0));
+
+    const Polar yz = polar(n[2], n[1]);
+    const int half_b = polar(yz.length, n[0]).angle / 2;
+    const int half_a = (normal[2] < 0 ? 4 * kAngles - yz.angle : yz.angle) / 2;
+    const int first = std::min(largest == 0 ? 2 * kAngles - half_a : half_a, kAngles);
+    const auto digit_a =
+        static_cast<std::int16_t>(digit_of_angle<kForm>(normal[1] > 0 ? -first : first));
+    const auto digit_b =
+        static_cast<std::int16_t>(digit_of_angle<kForm>(normal[0] < 0 ? -half_b : half_b));
+    if (largest == 0) return {kZero, digit_b, digit_a};
+    return {digit_a, digit_b, kZero};
+}
+
+template struct FrameCode<FrameForm::quat48>;
+template struct FrameCode<FrameForm::quat32>;
+
+}  // namespace mesh_format

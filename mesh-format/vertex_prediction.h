@@ -1,0 +1,121 @@
+// What a mesh's vertices are predicted from when they are coded, in integers only: so every
+// processor predicts the same.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "mesh-format/layout.h"
+
+namespace mesh_format {
+
+/// Three vertices before a vertex; what one of its numbers probably is: a + b - c, those of the
+/// three. Where b and c are the same, that is a.
+struct Neighbours {
+    std::uint16_t a, b, c;
+};
+
+/// The neighbours of `vertex_count` vertices, at most kMaxMeshVertices, of which the triangles are
+/// read one after the other. A triangle's vertices beyond all earlier ones are new, the smallest
+/// first. Let x and y be those that follow a new vertex v in its triangle. If both are before v,
+/// and of the last earlier triangles at x and at y the first with this edge has c < v as its
+/// third vertex, v lies across: x, y, c. Else v is as x, as y or as v - 1, the first of these that
+/// is before v: that one is a, b and c. So is 0 of vertex 0. A triangle may start at any of its
+/// corners. Every index must be below `vertex_count`.
+std::vector<Neighbours> find_neighbours(std::span<const std::uint16_t> indices,
+                                        std::uint32_t vertex_count);
+
+/// A direction, of any length.
+using Normal = std::array<std::int64_t, 3>;
+
+/// For each of `vertex_count` vertices, the sum of its triangles' normals, each as long as two
+/// times the triangle's area, modulo 2^64; of positions in the quantised form, `stride` bytes
+/// apart.
+std::vector<Normal> sum_normals(std::span<const std::uint16_t> indices, std::uint32_t vertex_count,
+                                const std::byte* positions, std::size_t stride);
+
+/// A tangent frame of quat48 or quat32, taken apart; tangent_frame.h says how.
+struct FrameDigits {
+    std::array<std::int16_t, 3> others;  ///< one for each component but the largest
+    std::uint16_t top;  ///< the largest component's number, in quat32 up to 8; + 4 left-handed
+};
+
+/// The digits of one of the two forms. Positive and negative ones are equally many; they stand for
+/// angles of a ratio, and ratios are in units of 1 / 32768.
+template <FrameForm kForm>
+struct FrameCode {
+    static_assert(kForm == FrameForm::quat48 || kForm == FrameForm::quat32);
+    static constexpr bool kWide = kForm == FrameForm::quat48;
+    static constexpr int kZero = kWide ? 16'383 : 405;    ///< the digit of ratio 0
+    static constexpr int kLevels = kWide ? 32'768 : 811;  ///< digits are below; 32,767 is spare
+
+    static FrameDigits take_apart(const std::byte* in);
+    static void put_together(const FrameDigits& frame, std::byte* out);
+
+    /// The digits of the same rotation if component `largest` is taken for the largest one.
+    static std::array<std::int16_t, 3> rebased(const FrameDigits& frame, std::uint32_t largest) {
+        return (frame.top & 3u) == largest ? frame.others : with_largest(frame, largest);
+    }
+
+    /// What digit others[partner(largest)] is where the tangent is the x axis, made orthogonal to
+    /// the normal: then the bitangent's x, 2 (xy - zw) of the quaternion, is 0.
+    static int of_x_tangent(const FrameDigits& frame);
+
+    /// The digits of such a frame if it has this normal, except for others[partner(largest)].
+    /// Component `largest` is x or w, as it always is in such frames.
+    static std::array<std::int16_t, 3> of_normal(const Normal& normal, std::uint32_t largest);
+
+ private:
+    static std::array<std::int16_t, 3> with_largest(const FrameDigits& frame,
+                                                    std::uint32_t largest);
+};
+
+/// The place among the others of that component whose product with the largest is xy or zw.
+constexpr std::uint32_t partner(std::uint32_t largest) {
+    return (largest ^ 1) - ((largest ^ 1) > largest);
+}
+
+template <FrameForm kForm>
+inline FrameDigits FrameCode<kForm>::take_apart(const std::byte* in) {
+    FrameDigits frame{};
+    if constexpr (kWide) {
+        std::array<std::uint16_t, 3> words;
+        std::memcpy(&words, in, sizeof words);
+        for (std::size_t k = 0; k < 3; ++k)
+            frame.others[k] = static_cast<std::int16_t>(words[k] & 0x7FFF);
+        frame.top =
+            static_cast<std::uint16_t>(words[1] >> 15 | words[2] >> 15 << 1 | words[0] >> 15 << 2);
+    } else {
+        std::uint32_t code = 0;
+        std::memcpy(&code, in, sizeof code);
+        for (std::int16_t& digit : frame.others) {
+            digit = static_cast<std::int16_t>(code % kLevels);
+            code /= kLevels;
+        }
+        frame.top = static_cast<std::uint16_t>(code);
+    }
+    return frame;
+}
+
+template <FrameForm kForm>
+inline void FrameCode<kForm>::put_together(const FrameDigits& frame, std::byte* out) {
+    if constexpr (kWide) {
+        const unsigned high[] = {frame.top >> 2u & 1u, frame.top & 1u, frame.top >> 1u & 1u};
+        std::array<std::uint16_t, 3> words;
+        for (std::size_t k = 0; k < 3; ++k)
+            words[k] =
+                static_cast<std::uint16_t>(static_cast<unsigned>(frame.others[k]) | high[k] << 15);
+        std::memcpy(out, &words, sizeof words);
+    } else {
+        std::uint32_t code = frame.top;
+        for (std::size_t k = 3; k-- > 0;)
+            code = code * kLevels + static_cast<std::uint32_t>(frame.others[k]);
+        std::memcpy(out, &code, sizeof code);
+    }
+}
+
+}  // namespace mesh_format

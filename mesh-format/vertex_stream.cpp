@@ -1,0 +1,354 @@
+#include "mesh-format/vertex_stream.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+
+#include "mesh-format/vertex_prediction.h"
+
+namespace mesh_format {
+
+namespace {
+
+constexpr std::uint32_t kFramePlanes = 7;  // of quat48 and quat32
+
+bool in_digits(FrameForm form) {
+    return form == FrameForm::quat48 || form == FrameForm::quat32;
+}
+
+std::uint32_t plane_count(const VertexForms& forms) {
+    return position_bytes(forms.position) + uv_bytes(forms.uv) + color_bytes(forms.color) +
+           (in_digits(forms.frame) ? kFramePlanes : frame_bytes(forms.frame));
+}
+
+/// Small numbers of both signs to small numbers: 0, -1, 1, -2 to 0, 1, 2, 3.
+template <typename Word>
+Word zigzag(Word value) {
+    const bool negative = value >> (8 * sizeof value - 1) != 0;
+    return static_cast<Word>(value << 1 ^ (negative ? ~0u : 0u));
+}
+template <typename Word>
+Word unzigzag(Word value) {
+    return static_cast<Word>(value >> 1 ^ (value & 1 ? ~0u : 0u));
+}
+
+/// The bits of a float to a number of the same order, modulo 2^32; other words stay as they are.
+template <typename Word>
+Word ordered(Word word) {
+    if constexpr (sizeof word == 4) return word >> 31 != 0 ? ~word : word | 0x8000'0000;
+    return word;
+}
+template <typename Word>
+Word unordered(Word word) {
+    if constexpr (sizeof word == 4) return word >> 31 != 0 ? word & 0x7FFF'FFFF : ~word;
+    return word;
+}
+
+/// Words of the numbers of one part of the vertices, in byte planes: the lowest byte of the first
+/// number of all vertices, of the second, ..., then the next bytes.
+template <typename Word>
+void split(std::span<const Word> words, std::size_t plane, std::size_t numbers, std::byte* planes) {
+    const std::size_t count = words.size();
+    for (std::size_t byte = 0; byte < sizeof(Word); ++byte) {
+        std::byte* const out = planes + (byte * numbers + plane) * count;
+        for (std::size_t i = 0; i < count; ++i) out[i] = std::byte(words[i] >> (8 * byte) & 0xFF);
+    }
+}
+template <typename Word>
+void join(const std::byte* planes, std::size_t plane, std::size_t numbers, std::span<Word> words) {
+    const std::size_t count = words.size();
+    const std::byte* const in = planes + plane * count;
+    for (std::size_t i = 0; i < count; ++i) {
+        Word word{};
+        for (std::size_t byte = 0; byte < sizeof(Word); ++byte)
+            word = static_cast<Word>(word | static_cast<Word>(in[byte * numbers * count + i])
+                                                << (8 * byte));
+        words[i] = unzigzag(word);
+    }
+}
+
+/// A part of all vertices that is kNumbers words.
+template <typename Word, std::size_t kNumbers>
+class Words {
+ public:
+    static constexpr std::size_t kPlanes = kNumbers * sizeof(Word);
+
+    Words(std::size_t stride, std::span<const Neighbours> neighbours)
+        : stride_(stride), neighbours_(neighbours) {}
+
+    void encode(const std::byte* vertices, std::byte* planes) const {
+        std::array<std::vector<Word>, kNumbers> words;
+        for (auto& each : words) each.resize(neighbours_.size());
+        for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+            const Values value = at(vertices + i * stride_);
+            const Values expected = predicted(i, vertices);
+            for (std::size_t k = 0; k < kNumbers; ++k)
+                words[k][i] = zigzag(static_cast<Word>(value[k] - expected[k]));
+        }
+        for (std::size_t k = 0; k < kNumbers; ++k) split<Word>(words[k], k, kNumbers, planes);
+    }
+
+    void decode(const std::byte* planes, std::byte* vertices) const {
+        std::array<std::vector<Word>, kNumbers> words;
+        for (std::size_t k = 0; k < kNumbers; ++k) {
+            words[k].resize(neighbours_.size());
+            join<Word>(planes, k, kNumbers, words[k]);
+        }
+        for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+            Values value = predicted(i, vertices);
+            for (std::size_t k = 0; k < kNumbers; ++k)
+                value[k] = unordered(static_cast<Word>(value[k] + words[k][i]));
+            std::memcpy(vertices + i * stride_, &value, sizeof value);
+        }
+    }
+
+ private:
+    using Values = std::array<Word, kNumbers>;
+
+    static Values at(const std::byte* vertex) {
+        Values values;
+        std::memcpy(&values, vertex, sizeof values);
+        for (Word& value : values) value = ordered(value);
+        return values;
+    }
+
+    Values predicted(std::size_t i, const std::byte* vertices) const {
+        if (i == 0) return {};
+        const Values a = at(vertices + neighbours_[i].a * stride_);
+        const Values b = at(vertices + neighbours_[i].b * stride_);
+        const Values c = at(vertices + neighbours_[i].c * stride_);
+        Values sum;
+        for (std::size_t k = 0; k < kNumbers; ++k) sum[k] = static_cast<Word>(a[k] + b[k] - c[k]);
+        return sum;
+    }
+
+    std::size_t stride_;
+    std::span<const Neighbours> neighbours_;
+};
+
+/// The tangent frames of all vertices, if they are of a form in digits.
+template <FrameForm kForm, FrameModel kModel>
+class Frames {
+ public:
+    static constexpr std::size_t kPlanes = kFramePlanes;
+
+    /// `normals` are for the model that uses them.
+    Frames(std::size_t stride, std::span<const Neighbours> neighbours,
+           std::span<const Normal> normals)
+        : stride_(stride),
+          neighbours_(neighbours),
+          normals_(normals),
+          frames_(neighbours.size()),
+          tops_(neighbours.size()) {
+        for (auto& each : words_) each.resize(neighbours.size());
+    }
+
+    void encode(const std::byte* vertices, std::byte* planes) {
+        for (FrameDigits& frame : frames_) {
+            frame = Code::take_apart(vertices);
+            vertices += stride_;
+        }
+        for (std::size_t i = 0; i < frames_.size(); ++i) code<true>(i);
+        split<std::uint8_t>(tops_, 0, 1, planes);
+        planes += tops_.size();
+        for (std::size_t k = 0; k < 3; ++k) split<std::uint16_t>(words_[k], k, 3, planes);
+    }
+
+    void decode(const std::byte* planes, std::byte* vertices) {
+        std::memcpy(tops_.data(), planes, tops_.size());
+        planes += tops_.size();
+        for (std::size_t k = 0; k < 3; ++k) join<std::uint16_t>(planes, k, 3, words_[k]);
+        for (std::size_t i = 0; i < frames_.size(); ++i) {
+            code<false>(i);
+            Code::put_together(frames_[i], vertices + i * stride_);
+        }
+    }
+
+ private:
+    using Code = FrameCode<kForm>;
+    using Digits = std::array<std::int16_t, 3>;
+
+    /// A vertex's frame to what it differs from the expected one by, or the other way.
+    template <bool kEncode>
+    void code(std::size_t i) {
+        FrameDigits& frame = frames_[i];
+        const std::uint16_t top_before = i > 0 ? frames_[neighbours_[i].a].top : 0;
+        if constexpr (kEncode)
+            tops_[i] = static_cast<std::uint8_t>(frame.top ^ top_before);
+        else
+            frame.top = tops_[i] ^ top_before;
+        const Digits expected = expected_at(i);
+        if constexpr (kModel != FrameModel::neighbours) {
+            const std::uint32_t place = partner(frame.top & 3u);
+            const std::uint32_t first = place == 0 ? 1 : 0;
+            const std::uint32_t second = place == 2 ? 1 : 2;
+            code_digit<kEncode>(words_[0][i], expected[first], frame.others[first]);
+            code_digit<kEncode>(words_[1][i], expected[second], frame.others[second]);
+            code_digit<kEncode>(words_[2][i], Code::of_x_tangent(frame), frame.others[place]);
+        } else {
+            for (std::size_t k = 0; k < 3; ++k)
+                code_digit<kEncode>(words_[k][i], expected[k], frame.others[k]);
+        }
+    }
+
+    /// Modulo 2^16.
+    Digits expected_at(std::size_t i) const {
+        const std::uint32_t largest = frames_[i].top & 3u;
+        if (kModel == FrameModel::x_tangent_of_positions && (largest == 0 || largest == 3))
+            return Code::of_normal(normals_[i], largest);
+        if (i == 0) return {Code::kZero, Code::kZero, Code::kZero};
+        const Neighbours& at = neighbours_[i];
+        const FrameDigits& a = frames_[at.a];
+        const FrameDigits& b = frames_[at.b];
+        const FrameDigits& c = frames_[at.c];
+        if (((a.top ^ largest) | (b.top ^ largest) | (c.top ^ largest)) & 3u) [[unlikely]]
+            return Code::rebased(a, largest);
+        Digits sum;
+        for (std::size_t k = 0; k < 3; ++k)
+            sum[k] = static_cast<std::int16_t>(a.others[k] + b.others[k] - c.others[k]);
+        return sum;
+    }
+
+    /// Differences are modulo the number of levels, and as small as that allows.
+    template <bool kEncode>
+    static void code_digit(std::uint16_t& word, int expected, std::int16_t& digit) {
+        if constexpr (kEncode) {
+            int difference = digit - expected;
+            if (difference >= (Code::kLevels + 1) / 2) difference -= Code::kLevels;
+            if (difference < -(Code::kLevels / 2)) difference += Code::kLevels;
+            word = zigzag(static_cast<std::uint16_t>(difference));
+        } else {
+            const int sum = expected + static_cast<std::int16_t>(word);
+            const int rest = sum % Code::kLevels;
+            digit = static_cast<std::int16_t>(rest < 0 ? rest + Code::kLevels : rest);
+        }
+    }
+
+    std::size_t stride_;
+    std::span<const Neighbours> neighbours_;
+    std::span<const Normal> normals_;
+    std::vector<FrameDigits> frames_;
+    std::vector<std::uint8_t> tops_;  // what differs between a frame's and its neighbour's
+    std::array<std::vector<std::uint16_t>, 3> words_;
+};
+
+/// Calls use(part, its offset in a vertex) for each part of the vertices but frames in digits, in
+/// the order in which the stream holds their planes.
+template <typename Use>
+void for_each_words(const VertexForms& forms, std::span<const Neighbours> neighbours, Use use) {
+    const VertexLayout layout = vertex_layout(forms);
+    const auto words = [&]<typename Word, std::size_t kNumbers>(std::uint32_t offset) {
+        use(Words<Word, kNumbers>(layout.stride, neighbours), offset);
+    };
+    using std::uint16_t, std::uint32_t, std::uint8_t;
+    if (forms.position == PositionForm::quantised)
+        words.template operator()<uint16_t, 3>(0);
+    else
+        words.template operator()<uint32_t, 3>(0);
+    if (forms.uv == UvForm::quantised)
+        words.template operator()<uint16_t, 2>(layout.uv_offset);
+    else
+        words.template operator()<uint32_t, 2>(layout.uv_offset);
+    if (forms.color != ColorForm::none) words.template operator()<uint8_t, 4>(layout.color_offset);
+    if (forms.frame == FrameForm::half3)
+        words.template operator()<uint16_t, 3>(layout.frame_offset);
+    if (forms.frame == FrameForm::f32) words.template operator()<uint32_t, 4>(layout.frame_offset);
+}
+
+/// Calls use(frames) for frames in digits.
+template <typename Use>
+void with_frames(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
+                 const std::byte* vertices, FrameModel model,
+                 std::span<const Neighbours> neighbours, Use use) {
+    const std::size_t stride = vertex_layout(mesh.forms).stride;
+    std::vector<Normal> normals;
+    if (model == FrameModel::x_tangent_of_positions)
+        normals = sum_normals(indices, mesh.vertex_count, vertices, stride);
+    const auto frames = [&]<FrameForm kForm>() {
+        switch (model) {
+            case FrameModel::neighbours:
+                return use(Frames<kForm, FrameModel::neighbours>(stride, neighbours, normals));
+            case FrameModel::x_tangent:
+                return use(Frames<kForm, FrameModel::x_tangent>(stride, neighbours, normals));
+            case FrameModel::x_tangent_of_positions:
+                return use(
+                    Frames<kForm, FrameModel::x_tangent_of_positions>(stride, neighbours, normals));
+        }
+    };
+    if (mesh.forms.frame == FrameForm::quat48)
+        frames.template operator()<FrameForm::quat48>();
+    else
+        frames.template operator()<FrameForm::quat32>();
+}
+
+/// Whether a stream of the mesh may say so.
+bool allows(const VertexForms& forms, FrameModel model) {
+    if (model == FrameModel::neighbours) return true;
+    return in_digits(forms.frame) &&
+           (model == FrameModel::x_tangent || (model == FrameModel::x_tangent_of_positions &&
+                                               forms.position == PositionForm::quantised));
+}
+
+/// About how many bits planes will take.
+std::size_t bits_of(std::span<const std::byte> planes) {
+    std::size_t bits = 0;
+    for (const std::byte byte : planes)
+        bits += static_cast<std::size_t>(std::bit_width(std::to_integer<unsigned>(byte)));
+    return bits;
+}
+
+}  // namespace
+
+std::size_t vertex_stream_bytes(const MeshRecord& mesh) {
+    return 1 + std::size_t{mesh.vertex_count} * plane_count(mesh.forms);
+}
+
+std::vector<std::byte> encode_vertices(const MeshRecord& mesh,
+                                       std::span<const std::uint16_t> indices,
+                                       const std::byte* vertices) {
+    const std::vector<Neighbours> neighbours = find_neighbours(indices, mesh.vertex_count);
+    std::vector<std::byte> stream(vertex_stream_bytes(mesh));
+    std::byte* planes = stream.data() + 1;
+    for_each_words(mesh.forms, neighbours, [&](auto part, std::uint32_t offset) {
+        part.encode(vertices + offset, planes);
+        planes += part.kPlanes * mesh.vertex_count;
+    });
+    if (!in_digits(mesh.forms.frame)) return stream;
+    std::size_t fewest_bits = std::numeric_limits<std::size_t>::max();
+    std::vector<std::byte> candidate(std::size_t{kFramePlanes} * mesh.vertex_count);
+    for (const FrameModel model :
+         {FrameModel::neighbours, FrameModel::x_tangent, FrameModel::x_tangent_of_positions}) {
+        if (!allows(mesh.forms, model)) continue;
+        with_frames(mesh, indices, vertices, model, neighbours, [&](auto frames) {
+            frames.encode(vertices + vertex_layout(mesh.forms).frame_offset, candidate.data());
+        });
+        const std::size_t bits = bits_of(candidate);
+        if (bits >= fewest_bits) continue;
+        fewest_bits = bits;
+        stream[0] = static_cast<std::byte>(model);
+        std::ranges::copy(candidate, planes);
+    }
+    return stream;
+}
+
+bool decode_vertices(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
+                     const std::byte* stream, std::byte* vertices) {
+    const auto model = static_cast<FrameModel>(stream[0]);
+    if (!allows(mesh.forms, model)) return false;
+    const std::vector<Neighbours> neighbours = find_neighbours(indices, mesh.vertex_count);
+    const std::byte* planes = stream + 1;
+    for_each_words(mesh.forms, neighbours, [&](auto part, std::uint32_t offset) {
+        part.decode(planes, vertices + offset);
+        planes += part.kPlanes * mesh.vertex_count;
+    });
+    if (in_digits(mesh.forms.frame)) {
+        with_frames(mesh, indices, vertices, model, neighbours, [&](auto frames) {
+            frames.decode(planes, vertices + vertex_layout(mesh.forms).frame_offset);
+        });
+    }
+    return true;
+}
+
+}  // namespace mesh_format

@@ -1,0 +1,278 @@
+// Vertices as a compressed file holds them: they come back as they were, whatever they are.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "mesh-format/file.h"
+#include "mesh-format/tangent_frame.h"
+#include "mesh-format/vertex_prediction.h"
+#include "mesh-format/vertex_stream.h"
+
+namespace {
+
+using namespace mesh_format;
+using Bytes = std::vector<std::byte>;
+using Indices = std::vector<std::uint16_t>;
+
+constexpr std::uint16_t kSide = 20;  // vertices along each side of a sheet
+
+/// The triangles of a sheet of vertices, in the order of the vertices.
+Indices sheet() {
+    Indices indices;
+    for (std::uint16_t y = 1; y < kSide; ++y) {
+        for (std::uint16_t x = 1; x < kSide; ++x) {
+            const auto d = static_cast<std::uint16_t>(y * kSide + x);
+            const auto c = static_cast<std::uint16_t>(d - 1);
+            const auto b = static_cast<std::uint16_t>(d - kSide);
+            const auto a = static_cast<std::uint16_t>(b - 1);
+            for (const std::uint16_t corner : {a, b, c, b, d, c}) indices.push_back(corner);
+        }
+    }
+    return indices;
+}
+
+Indices random_triangles(std::uint32_t vertices, std::size_t count) {
+    std::mt19937 random(3);
+    Indices indices(3 * count);
+    for (std::uint16_t& index : indices) index = static_cast<std::uint16_t>(random() % vertices);
+    return indices;
+}
+
+/// Bytes that are in no part of a vertex are 0.
+Bytes random_vertices(const MeshRecord& mesh) {
+    std::mt19937 random(5);
+    const VertexLayout layout = vertex_layout(mesh.forms);
+    Bytes vertices(std::size_t{mesh.vertex_count} * layout.stride);
+    const auto fill = [&](std::byte* part, std::uint32_t size) {
+        std::generate_n(part, size, [&] { return std::byte(random() & 0xFF); });
+    };
+    for (std::uint32_t i = 0; i < mesh.vertex_count; ++i) {
+        std::byte* const vertex = &vertices[std::size_t{i} * layout.stride];
+        fill(vertex, position_bytes(mesh.forms.position));
+        fill(vertex + layout.frame_offset, frame_bytes(mesh.forms.frame));
+        fill(vertex + layout.uv_offset, uv_bytes(mesh.forms.uv));
+        fill(vertex + layout.color_offset, color_bytes(mesh.forms.color));
+    }
+    return vertices;
+}
+
+std::vector<VertexForms> all_forms() {
+    std::vector<VertexForms> all;
+    for (const auto position : {PositionForm::quantised, PositionForm::f32})
+        for (const auto frame :
+             {FrameForm::quat48, FrameForm::quat32, FrameForm::half3, FrameForm::f32})
+            for (const auto uv : {UvForm::quantised, UvForm::f32})
+                for (const auto color : {ColorForm::none, ColorForm::rgba8})
+                    all.push_back({position, frame, uv, color});
+    return all;
+}
+
+Bytes decoded(const MeshRecord& mesh, const Indices& indices, const Bytes& stream) {
+    Bytes vertices(std::size_t{mesh.vertex_count} * vertex_layout(mesh.forms).stride);
+    EXPECT_TRUE(decode_vertices(mesh, indices, stream.data(), vertices.data()));
+    return vertices;
+}
+
+TEST(VertexStream, AnyVerticesOfAnyFormComeBack) {
+    for (const VertexForms& forms : all_forms()) {
+        for (const std::uint32_t count : {1u, 2u, 400u}) {
+            const MeshRecord mesh{.forms = forms, .vertex_count = count};
+            const Bytes vertices = random_vertices(mesh);
+            for (const Indices& indices :
+                 {count < 400 ? Indices{} : sheet(), random_triangles(count, 700)}) {
+                const Bytes stream = encode_vertices(mesh, indices, vertices.data());
+                EXPECT_EQ(stream.size(), vertex_stream_bytes(mesh));
+                EXPECT_EQ(decoded(mesh, indices, stream), vertices);
+            }
+        }
+    }
+}
+
+TEST(VertexStream, TheLargestMeshesComeBack) {
+    const MeshRecord mesh{.vertex_count = kMaxMeshVertices};
+    const Bytes vertices = random_vertices(mesh);
+    const Indices indices = random_triangles(kMaxMeshVertices, 100'000);
+    EXPECT_EQ(decoded(mesh, indices, encode_vertices(mesh, indices, vertices.data())), vertices);
+}
+
+/// What one processor writes, every other reads.
+TEST(VertexStream, IsTheSameOnEveryProcessor) {
+    std::uint64_t sum = 0;
+    for (const FrameForm form : {FrameForm::quat48, FrameForm::quat32}) {
+        const MeshRecord mesh{.forms = {.frame = form}, .vertex_count = 400};
+        Bytes stream(vertex_stream_bytes(mesh));
+        std::mt19937 random(13);
+        for (const int model : {0, 1, 2}) {
+            for (std::byte& byte : stream) byte = std::byte(random() & 0xFF);
+            stream[0] = std::byte(model);
+            sum = sum * 31 + checksum(decoded(mesh, sheet(), stream));
+        }
+    }
+    EXPECT_EQ(sum, 17454938545830013023u);
+}
+
+/// On a sheet of parallelograms all but its border is foreseen.
+TEST(VertexStream, ParallelogramsLeaveNothingToSay) {
+    for (const FrameForm form : {FrameForm::quat48, FrameForm::quat32}) {
+        const MeshRecord mesh{.forms = {.frame = form}, .vertex_count = kSide * kSide};
+        Bytes vertices(std::size_t{mesh.vertex_count} * vertex_layout(mesh.forms).stride);
+        for (std::uint16_t v = 0; v < mesh.vertex_count; ++v) {
+            const std::uint16_t position[] = {std::uint16_t(7 * (v % kSide) + 60'000),
+                                              std::uint16_t(900 - 3 * (v / kSide)), 5};
+            std::memcpy(&vertices[v * std::size_t{vertex_layout(mesh.forms).stride}], position,
+                        sizeof position);
+        }
+        const Bytes stream = encode_vertices(mesh, sheet(), vertices.data());
+        const auto zeros = std::ranges::count(stream, std::byte{0});
+        EXPECT_GT(zeros, static_cast<std::ptrdiff_t>(stream.size()) - 4 * kSide);
+    }
+}
+
+TEST(VertexStream, TrianglesMayStartAtAnyCorner) {
+    for (Indices indices : {sheet(), random_triangles(400, 700)}) {
+        const auto before = find_neighbours(indices, 400);
+        for (std::size_t i = 0; i < indices.size(); i += 3) {
+            const auto first = indices.begin() + static_cast<std::ptrdiff_t>(i);
+            std::rotate(first, first + 1 + i % 2, first + 3);
+        }
+        const auto after = find_neighbours(indices, 400);
+        for (std::size_t v = 0; v < before.size(); ++v) {
+            EXPECT_EQ(before[v].a, after[v].a);
+            EXPECT_EQ(before[v].b, after[v].b);
+            EXPECT_EQ(before[v].c, after[v].c);
+        }
+    }
+}
+
+/// By docs/format.md, looking through all triangles.
+std::vector<Neighbours> searched(const Indices& indices, std::uint16_t count) {
+    std::vector<Neighbours> result;
+    for (std::uint16_t v = 0; v < count; ++v) {
+        const auto before = static_cast<std::uint16_t>(v > 0 ? v - 1 : 0);
+        result.push_back({before, before, before});
+    }
+    // The third vertex of the last triangle before `end` at x, if that also holds y.
+    const auto third = [&](std::size_t end, std::uint16_t x, std::uint16_t y) {
+        for (std::size_t i = end; i-- > 0;) {
+            if (indices[i] != x) continue;
+            const std::size_t first = i - i % 3;
+            const std::uint16_t p = indices[first + (i + 1) % 3];
+            const std::uint16_t q = indices[first + (i + 2) % 3];
+            return p == y ? int{q} : q == y ? int{p} : -1;
+        }
+        return -1;
+    };
+    int next = 0;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+        for (int v = next; v < count; ++v) {
+            const auto first = indices.begin() + static_cast<std::ptrdiff_t>(i);
+            const auto at = std::find(first, first + 3, v);
+            if (at == first + 3) continue;
+            next = v + 1;
+            const std::uint16_t x = indices[i + static_cast<std::size_t>(at + 1 - first) % 3];
+            const std::uint16_t y = indices[i + static_cast<std::size_t>(at + 2 - first) % 3];
+            if (x < v && y < v) {
+                int c = third(i, x, y);
+                if (c < 0) c = third(i, y, x);
+                const bool across = c >= 0 && c < v;
+                result[static_cast<std::size_t>(v)] = {x, across ? y : x,
+                                                       across ? static_cast<std::uint16_t>(c) : x};
+            } else if (x < v || y < v) {
+                const std::uint16_t a = x < v ? x : y;
+                result[static_cast<std::size_t>(v)] = {a, a, a};
+            }
+        }
+    }
+    return result;
+}
+
+TEST(VertexStream, NeighboursAreThoseOfTheFormat) {
+    std::mt19937 random(17);
+    Indices shuffled = sheet();
+    for (std::size_t i = shuffled.size() / 3; i-- > 1;) {
+        const std::size_t other = random() % (i + 1);
+        std::swap_ranges(&shuffled[3 * i], &shuffled[3 * i] + 3, &shuffled[3 * other]);
+    }
+    // In the order of their first use, as bakes number them.
+    Indices numbers(400, 0xFFFF);
+    std::uint16_t used = 0;
+    Indices ordered = shuffled;
+    for (std::uint16_t& index : ordered) {
+        if (numbers[index] == 0xFFFF) numbers[index] = used++;
+        index = numbers[index];
+    }
+    for (const Indices& indices : {sheet(), shuffled, ordered, random_triangles(400, 700)}) {
+        const auto found = find_neighbours(indices, 400);
+        const auto expected = searched(indices, 400);
+        for (std::size_t v = 0; v < found.size(); ++v) {
+            EXPECT_EQ(found[v].a, expected[v].a) << v;
+            EXPECT_EQ(found[v].b, expected[v].b) << v;
+            EXPECT_EQ(found[v].c, expected[v].c) << v;
+        }
+    }
+}
+
+TEST(VertexStream, NeighboursComeBefore) {
+    for (const Indices& indices : {sheet(), random_triangles(400, 700), Indices{}}) {
+        const auto neighbours = find_neighbours(indices, 400);
+        for (std::uint16_t v = 1; v < 400; ++v) {
+            EXPECT_LT(std::max({neighbours[v].a, neighbours[v].b, neighbours[v].c}), v);
+        }
+    }
+}
+
+TEST(VertexStream, AnyBytesBecomeVerticesOrAreRefused) {
+    std::mt19937 random(7);
+    for (const VertexForms& forms : all_forms()) {
+        const MeshRecord mesh{.forms = forms, .vertex_count = 400};
+        for (int i = 0; i < 20; ++i) {
+            Bytes stream(vertex_stream_bytes(mesh));
+            for (std::byte& byte : stream) byte = std::byte(random() & 0xFF);
+            Bytes vertices(std::size_t{mesh.vertex_count} * vertex_layout(forms).stride);
+            stream[0] = std::byte(i % 4);
+            const bool in_digits = forms.frame <= FrameForm::quat32;
+            const bool quantised = forms.position == PositionForm::quantised;
+            const bool sound[] = {true, in_digits, in_digits && quantised, false};
+            EXPECT_EQ(decode_vertices(mesh, sheet(), stream.data(), vertices.data()), sound[i % 4]);
+        }
+    }
+}
+
+/// A bumpy sheet with normals or without UVs: what the models are for.
+TEST(VertexStream, FramesAreForeseen) {
+    const Indices indices = sheet();
+    for (const FrameForm form : {FrameForm::quat48, FrameForm::quat32}) {
+        const MeshRecord mesh{.forms = {.frame = form}, .vertex_count = kSide * kSide};
+        const VertexLayout layout = vertex_layout(mesh.forms);
+        Bytes vertices(std::size_t{mesh.vertex_count} * layout.stride);
+        std::mt19937 random(11);
+        for (std::uint16_t v = 0; v < mesh.vertex_count; ++v) {
+            const std::uint16_t position[] = {std::uint16_t(1000 * (v % kSide)),
+                                              std::uint16_t(1000 * (v / kSide)),
+                                              std::uint16_t(random() % 2000)};
+            std::memcpy(&vertices[v * std::size_t{layout.stride}], position, sizeof position);
+        }
+        const auto normals =
+            sum_normals(indices, mesh.vertex_count, vertices.data(), layout.stride);
+        for (std::uint16_t v = 0; v < mesh.vertex_count; ++v) {
+            const TangentFrame frame{
+                {1.0f, 0.0f, 0.0f},
+                {static_cast<float>(normals[v][0]), static_cast<float>(normals[v][1]),
+                 static_cast<float>(normals[v][2])},
+                -1.0f};
+            pack_frame(form, frame,
+                       &vertices[v * std::size_t{layout.stride} + layout.frame_offset]);
+        }
+        const Bytes stream = encode_vertices(mesh, indices, vertices.data());
+        EXPECT_EQ(stream[0], std::byte(FrameModel::x_tangent_of_positions));
+        // The digits differ by one or two from what is expected.
+        const auto digits = std::span(stream).last(std::size_t{6} * mesh.vertex_count);
+        EXPECT_LE(std::ranges::max(digits), std::byte{8});
+        EXPECT_EQ(decoded(mesh, indices, stream), vertices);
+    }
+}
+
+}  // namespace
