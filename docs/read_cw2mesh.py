@@ -6,11 +6,13 @@
     for mesh in scene.meshes:
         print(scene.materials[mesh.material].name, len(mesh.vertices), mesh.vertices[0].position)
 
-It needs Python 3.8 and nothing else. `python3 read_cw2mesh.py FILE` prints what is in a file. What is
+It needs Python 3.8, for compressed files the library libzstd, and nothing else. `python3 read_cw2mesh.py FILE` prints what is in a file. What is
 no sound file raises FormatError.
 """
 
 import collections
+import ctypes
+import functools
 import math
 import struct
 import sys
@@ -148,11 +150,14 @@ def vertex_layout(forms):
     return frame_at, uv_at, color_at, align(color_at + (4 if color == "rgba8" else 0), wide)
 
 
+TAN_COEFFICIENTS = (0.00047622071, 0.000476221874, 0.0035121711, 0.0132167106, 0.0531149842, 0.214601785)
+
+
 def tan_quarter_pi(x):
     """tan(x pi / 4) for |x| <= 1, the polynomial that all decoders share."""
     y = x * x
     q = 0.0
-    for c in (0.00047622071, 0.000476221874, 0.0035121711, 0.0132167106, 0.0531149842, 0.214601785):
+    for c in TAN_COEFFICIENTS:
         q = q * y + c
     return x * (1 - (1 - y) * q)
 
@@ -301,6 +306,340 @@ def texels(scene, texture, level=0):
     return width, height, b"".join(bytes(row[:width * channels]) for row in rows[:height])
 
 
+# --- Compressed geometry --------------------------------------------------------------------------
+
+
+@functools.lru_cache(None)
+def zstd():
+    """The library."""
+    for name in ("libzstd.so.1", "libzstd.1.dylib", "libzstd.dll"):
+        try:
+            library = ctypes.CDLL(name)
+        except OSError:
+            continue
+        library.ZSTD_getFrameContentSize.restype = ctypes.c_ulonglong
+        library.ZSTD_getFrameContentSize.argtypes = [ctypes.c_char_p, ctypes.c_size_t]
+        library.ZSTD_decompress.restype = ctypes.c_size_t
+        library.ZSTD_decompress.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_char_p,
+                                            ctypes.c_size_t]
+        return library
+    raise OSError("compressed files need the library libzstd")
+
+
+def unwrap(frame, largest):
+    """What is in a Zstandard frame, if that is at most `largest` bytes."""
+    size = zstd().ZSTD_getFrameContentSize(frame, len(frame))
+    require(size <= largest, "encoded geometry is damaged")  # errors are the largest values
+    data = ctypes.create_string_buffer(size)
+    require(zstd().ZSTD_decompress(data, size, frame, len(frame)) == size, "encoded geometry is damaged")
+    return data.raw
+
+
+def split_parts(data, count):
+    """The parts of a section of encoded geometry, one a mesh."""
+    require(len(data) >= 4 * count, "encoded geometry does not fit the meshes")
+    at, parts = 4 * count, []
+    for size in struct.unpack_from(f"<{count}I", data):
+        parts.append(data[at:at + size])
+        at += size
+    require(at == len(data), "encoded geometry does not fit the meshes")
+    return parts
+
+
+class IndexDecoder:
+    """The index codec of meshoptimizer: triangles by edges and vertices that were seen not long ago."""
+
+    def __init__(self, data, triangle_count):
+        require(len(data) >= 1 + triangle_count + 16 and data[0] in (0xE0, 0xE1), "encoded indices are damaged")
+        self.data, self.at, self.end = data, 1 + triangle_count, len(data) - 16
+        self.codes, self.table = data[1:1 + triangle_count], data[-16:]
+        self.seen = 13 if data[0] == 0xE1 else 15  # codes below name a vertex that was seen
+        self.edges, self.vertices = [(0, 0)] * 16, [0] * 16  # the last ones, newest first
+        self.next = self.last = 0
+
+    def byte(self):
+        require(self.at < self.end, "encoded indices are damaged")
+        self.at += 1
+        return self.data[self.at - 1]
+
+    def free(self):
+        """An index by its difference to the last such."""
+        number = shift = 0
+        while True:
+            byte = self.byte()
+            number |= (byte & 127) << shift
+            shift += 7
+            if byte < 128 or shift > 28:
+                break
+        self.last = (self.last + (number >> 1 ^ -(number & 1))) & 0xFFFFFFFF
+        return self.last
+
+    def new(self):
+        self.next += 1
+        return self.next - 1
+
+    def push(self, vertices, edges):
+        self.vertices = (vertices[::-1] + self.vertices)[:16]
+        self.edges = (edges[::-1] + self.edges)[:16]
+
+    def beside_edge(self, code):
+        """A triangle at an edge that was seen."""
+        (a, b), third = self.edges[code >> 4], code & 15
+        if 0 < third < self.seen:
+            c, pushed = self.vertices[third], []
+        else:
+            if third == 0:
+                c = self.new()
+            elif third == 15:
+                c = self.free()
+            else:
+                c = self.last = self.last + (1 if third == 14 else -1)
+            pushed = [c]
+        self.push(pushed, [(c, b), (a, c)])
+        return a, b, c
+
+    def alone(self, code):
+        """A triangle at no edge that was seen."""
+        kinds = self.table[code & 15] if code < 0xFE else self.byte()
+        if code >= 0xFE and kinds == 0:
+            self.next = 0
+        kinds = (15 if code == 0xFF else 0, kinds >> 4, kinds & 15)
+        corners = [self.new() if kind == 0 else self.vertices[kind - 1] for kind in kinds]
+        for i in range(3):
+            if kinds[i] == 15:  # after those that are new
+                corners[i] = self.free()
+        a, b, c = corners
+        self.push([corner for corner, kind in zip(corners, kinds) if kind in (0, 15)],
+                  [(b, a), (c, b), (a, c)])
+        return a, b, c
+
+    def decode(self):
+        triangles = [self.beside_edge(code) if code < 0xF0 else self.alone(code) for code in self.codes]
+        require(self.at == self.end, "encoded indices are damaged")
+        return tuple(index & 0xFFFF for triangle in triangles for index in triangle)
+
+
+def find_neighbours(indices, vertex_count):
+    """Of each vertex, the three that it is predicted from."""
+    neighbours = [(max(v - 1, 0),) * 3 for v in range(vertex_count)]
+    last, new = [(0, 0)] * vertex_count, 0
+    for i in range(0, len(indices), 3):
+        triangle = indices[i:i + 3]
+        while max(triangle) >= new:
+            v = min(index for index in triangle if index >= new)
+            corner = triangle.index(v)
+            x, y = triangle[(corner + 1) % 3], triangle[(corner + 2) % 3]
+            new = v + 1
+            if x < v and y < v:
+                c = v
+                for vertex, other in ((x, y), (y, x)):
+                    if other in last[vertex]:
+                        c = last[vertex][1 if last[vertex][0] == other else 0]
+                        break
+                neighbours[v] = (x, y, c) if c < v else (x, x, x)
+            elif x < v or y < v:
+                neighbours[v] = (x if x < v else y,) * 3
+        for k in range(3):
+            last[triangle[k]] = triangle[(k + 1) % 3], triangle[(k + 2) % 3]
+    return neighbours
+
+
+def read_numbers(stream, at, count, numbers, size):
+    """The differences of a part of `numbers` numbers of `size` bytes: a list for each number."""
+    result = []
+    for k in range(numbers):
+        planes = [stream[at + (byte * numbers + k) * count:][:count] for byte in range(size)]
+        codes = (int.from_bytes(bytes(code), "little") for code in zip(*planes))
+        result.append([code >> 1 ^ -(code & 1) for code in codes])
+    return result
+
+
+def decode_words(stream, at, neighbours, numbers, size, out, offset, stride):
+    """A part of all vertices that is numbers of `size` bytes, 4 of them floats, into `out`."""
+    mask, columns = 256 ** size - 1, []
+    for differences in read_numbers(stream, at, len(neighbours), numbers, size):
+        values = []
+        for i, (a, b, c) in enumerate(neighbours):
+            expected = values[a] + values[b] - values[c] if i else 0
+            values.append(expected + differences[i] & mask)
+        if size == 4:
+            values = [v & 0x7FFFFFFF if v >> 31 else ~v & mask for v in values]
+        columns.append(values)
+    form = struct.Struct("<" + {1: "B", 2: "H", 4: "I"}[size] * numbers)
+    for i, values in enumerate(zip(*columns)):
+        form.pack_into(out, i * stride + offset, *values)
+
+
+ONE = 32768  # the unit of ratios
+ANGLES = 16383  # 45 degrees
+
+
+@functools.lru_cache(None)
+def ratio_tables():
+    """The ratio of each angle, the angle of each ratio, and the secant of every eighth ratio."""
+    unit = 1 << 30
+    first, *coefficients = (int(single(c) * unit) for c in TAN_COEFFICIENTS)
+    ratio = []
+    for a in range(ANGLES + 1):
+        x = unit * a // ANGLES
+        y = x * x // unit
+        q = first
+        for c in coefficients:
+            q = q * y // unit + c
+        tangent = x * (unit - (unit - y) * q // unit) // unit
+        ratio.append((tangent + unit // ONE // 2) * ONE // unit)
+    angle, a = [], 0
+    for r in range(ONE + 1):
+        while ratio[a] < r:
+            a += 1
+        angle.append(a)
+    secant = [math.isqrt(ONE * ONE + r * r - 1) + 1 for r in range(0, ONE + 1, 8)]
+    return ratio, angle, secant
+
+
+def truncated(a, b):
+    """a / b, rounded to 0."""
+    return a // b if (a < 0) == (b < 0) else -(-a // b)
+
+
+class FrameDecoder:
+    """Frames of quat48 or quat32, as differences of digits to expected ones."""
+
+    def __init__(self, form, model, neighbours, normals):
+        self.is_wide, self.model, self.neighbours, self.normals = form == "quat48", model, neighbours, normals
+        self.zero, self.levels = (16383, 32768) if self.is_wide else (405, 811)
+        self.frames = []  # largest component + 4 left-handed, and three digits
+
+    def ratio_of(self, digit):
+        level = min(digit, 2 * self.zero) - self.zero
+        angle = abs(level)
+        if not self.is_wide:
+            angle = (angle * ANGLES + self.zero // 2) // self.zero
+        return ratio_tables()[0][angle] * (-1 if level < 0 else 1)
+
+    def digit_of_angle(self, angle):
+        level = abs(angle)
+        if not self.is_wide:
+            level = (level * self.zero + ANGLES // 2) // ANGLES
+        return self.zero + (-level if angle < 0 else level)
+
+    def digit_of(self, ratio):
+        angle = ratio_tables()[1][abs(ratio)]
+        return self.digit_of_angle(-angle if ratio < 0 else angle)
+
+    def with_largest(self, frame, largest):
+        """The digits of the same rotation if another component is taken for the largest."""
+        top, digits = frame
+        if top & 3 == largest:
+            return digits
+        q = [self.ratio_of(digit) for digit in digits]
+        q.insert(top & 3, ONE)
+        divisor = q.pop(largest) or 1
+        return [self.digit_of(min(max(truncated(c * ONE, divisor), -ONE), ONE)) for c in q]
+
+    def of_normal(self, normal, largest):
+        """The digits of a frame with this normal whose tangent is the x axis, but one."""
+        shift = max(max(abs(c) for c in normal).bit_length() - 15, 0)
+        x, y, z = ((abs(c) >> shift) * (-1 if c < 0 else 1) for c in normal)
+        angle, length = polar(abs(z), abs(y))
+        half_b = polar(length, abs(x))[0] // 2
+        half_a = (4 * ANGLES - angle if z < 0 else angle) // 2
+        first = min(2 * ANGLES - half_a if largest == 0 else half_a, ANGLES)
+        digit_a = self.digit_of_angle(-first if y > 0 else first)
+        digit_b = self.digit_of_angle(-half_b if x < 0 else half_b)
+        return [self.zero, digit_b, digit_a] if largest == 0 else [digit_a, digit_b, self.zero]
+
+    def expected(self, i, largest):
+        if self.model == 2 and largest in (0, 3):
+            return self.of_normal(self.normals[i], largest)
+        if i == 0:
+            return [self.zero] * 3
+        a, b, c = (self.frames[n] for n in self.neighbours[i])
+        if any(frame[0] & 3 != largest for frame in (a, b, c)):
+            return self.with_largest(a, largest)
+        sums = (x + y - z for x, y, z in zip(a[1], b[1], c[1]))
+        return [(s + 32768 & 65535) - 32768 for s in sums]
+
+    def decode(self, tops, differences):
+        for i, top in enumerate(tops):
+            top ^= self.frames[self.neighbours[i][0]][0] if i else 0
+            largest = top & 3
+            expected = self.expected(i, largest)
+            if self.model == 0:
+                digits = [(e + d[i]) % self.levels for e, d in zip(expected, differences)]
+            else:
+                other = largest ^ 1
+                place = other - (other > largest)
+                first, second = [k for k in range(3) if k != place]
+                digits = [0, 0, 0]
+                digits[first] = (expected[first] + differences[0][i]) % self.levels
+                digits[second] = (expected[second] + differences[1][i]) % self.levels
+                product = truncated(self.ratio_of(digits[first]) * self.ratio_of(digits[second]), ONE)
+                digits[place] = (self.digit_of(product) + differences[2][i]) % self.levels
+            self.frames.append((top, digits))
+
+    def pack(self, out, offset, stride):
+        for i, (top, (d, e, f)) in enumerate(self.frames):
+            if self.is_wide:
+                struct.pack_into("<3H", out, i * stride + offset, d | (top >> 2 & 1) << 15,
+                                 e | (top & 1) << 15, f | (top >> 1 & 1) << 15)
+            else:
+                code = ((top * 811 + f) * 811 + e) * 811 + d
+                struct.pack_into("<I", out, i * stride + offset, code & 0xFFFFFFFF)
+
+
+def polar(x, y):
+    """The angle to the x axis and the length of (x, y), neither negative."""
+    _, angles, secants = ratio_tables()
+    longer = max(x, y, 1)
+    ratio = min(x, y) * ONE // longer
+    angle = 2 * ANGLES - angles[ratio] if y > x else angles[ratio]
+    return angle, longer * (secants[ratio // 8] // 2) // (ONE // 2)
+
+
+def sum_normals(indices, vertex_count, out, stride):
+    """The sum of the normals of each vertex's triangles, from quantised positions."""
+    places = [struct.unpack_from("<3H", out, i * stride) for i in range(vertex_count)]
+    sums = [[0, 0, 0] for _ in places]
+    for i in range(0, len(indices), 3):
+        p, q, r = (places[index] for index in indices[i:i + 3])
+        u, v = [b - a for a, b in zip(p, q)], [b - a for a, b in zip(p, r)]
+        for index in indices[i:i + 3]:
+            for k in range(3):
+                sums[index][k] += u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2]
+    return sums
+
+
+def decode_vertices(mesh, indices, part):
+    """The vertices of a mesh, as in a plain file."""
+    position, frame, uv, color = mesh.forms
+    frame_at, uv_at, color_at, stride = vertex_layout(mesh.forms)
+    count = mesh.vertex_count
+    words = [(0, 3, 2 if position == "quantised" else 4), (uv_at, 2, 2 if uv == "quantised" else 4)]
+    words += [(color_at, 4, 1)] if color == "rgba8" else []
+    words += {"half3": [(frame_at, 3, 2)], "f32": [(frame_at, 4, 4)]}.get(frame, [])
+    in_digits = frame in ("quat48", "quat32")
+    size = 1 + count * (sum(numbers * size for _, numbers, size in words) + 7 * in_digits)
+    stream = unwrap(part, size)
+    require(len(stream) == size, "encoded geometry is damaged")
+    model, at = stream[0], 1
+    require(model == 0 or in_digits and (model == 1 or model == 2 and position == "quantised"),
+            "encoded geometry is damaged")
+    neighbours, out = find_neighbours(indices, count), bytearray(count * stride)
+    for offset, numbers, size in words:
+        decode_words(stream, at, neighbours, numbers, size, out, offset, stride)
+        at += numbers * size * count
+    if in_digits:
+        normals = sum_normals(indices, count, out, stride) if model == 2 else None
+        frames = FrameDecoder(frame, model, neighbours, normals)
+        frames.decode(stream[at:at + count], read_numbers(stream, at + count, count, 3, 2))
+        frames.pack(out, frame_at, stride)
+    return out
+
+
+# --- The file -------------------------------------------------------------------------------------
+
+
 def read(path):
     """The scene in a file: the fields of its scene record, meshes, materials, textures ..., whose
     fields are those of docs/format.md; meshes have vertices and indices, too."""
@@ -329,9 +668,16 @@ def parse(data):
                     for index in material.textures.values()), "a texture does not exist")
     for texture in scene.textures:
         check_texture(texture, scene.texels)
-    require(not sections["encoded_vertices"], "is compressed, which this reader does not read")
     for mesh in scene.meshes:
-        unpack_mesh(scene, mesh, sections["vertices"], sections["indices"])
+        check_mesh(scene, mesh)
+    if sections["encoded_vertices"]:
+        encoded = zip(scene.meshes, split_parts(sections["encoded_vertices"], len(scene.meshes)),
+                      split_parts(sections["encoded_indices"], len(scene.meshes)))
+        for mesh, vertices, indices in encoded:
+            decode_mesh(scene, mesh, vertices, indices)
+    else:
+        for mesh in scene.meshes:
+            unpack_mesh(scene, mesh, sections["vertices"], sections["indices"])
     return scene
 
 
@@ -346,17 +692,32 @@ def check_texture(texture, data):
             "is altered: wrong checksum of a texture's texels")
 
 
-def unpack_mesh(scene, mesh, vertices, indices):
+def check_mesh(scene, mesh):
     names = (POSITION_FORMS, FRAME_FORMS, UV_FORMS, COLOR_FORMS)
     require(all(form < len(forms) for form, forms in zip(mesh.forms, names)), "unknown vertex form")
     mesh.forms = tuple(forms[form] for form, forms in zip(mesh.forms, names))
     require(mesh.material < len(scene.materials), "a material does not exist")
-    end = mesh.vertex_offset + mesh.vertex_count * vertex_layout(mesh.forms)[3]
-    require(end <= len(vertices), "vertices lie outside their section")
-    require(2 * (mesh.first_index + mesh.index_count) <= len(indices), "indices lie outside their section")
+    require(0 < mesh.vertex_count <= 65536, "vertex count out of range")
+    require(mesh.index_count > 0 and mesh.index_count % 3 == 0, "index count is no multiple of 3")
+    require(mesh.vertex_offset + mesh.vertex_count * vertex_layout(mesh.forms)[3] <= scene.vertex_bytes,
+            "vertices lie outside their section")
+    require(mesh.first_index + mesh.index_count <= scene.index_count, "indices lie outside their section")
+
+
+def unpack_mesh(scene, mesh, vertices, indices):
+    require(len(vertices) == scene.vertex_bytes and len(indices) == 2 * scene.index_count,
+            "the scene's sizes do not fit its sections")
     mesh.indices = struct.unpack_from(f"<{mesh.index_count}H", indices, 2 * mesh.first_index)
-    require(not mesh.indices or max(mesh.indices) < mesh.vertex_count, "an index is out of range")
-    mesh.vertices = unpack_vertices(vertices[mesh.vertex_offset:end], mesh, scene.position_step)
+    require(max(mesh.indices) < mesh.vertex_count, "an index is out of range")
+    mesh.vertices = unpack_vertices(vertices[mesh.vertex_offset:], mesh, scene.position_step)
+
+
+def decode_mesh(scene, mesh, vertices, indices):
+    # No triangle takes more than a code, a byte, and three numbers of five.
+    stream = unwrap(indices, 17 + mesh.index_count // 3 * 17)
+    mesh.indices = IndexDecoder(stream, mesh.index_count // 3).decode()
+    require(max(mesh.indices) < mesh.vertex_count, "an index is out of range")
+    mesh.vertices = unpack_vertices(decode_vertices(mesh, mesh.indices, vertices), mesh, scene.position_step)
 
 
 def main():

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "docs"), str(ROOT / "tests")]
@@ -26,7 +27,8 @@ BAKE, DUMP = sys.argv[1:3]
 
 def write_scene(folder):
     """A bumpy sphere whose UVs are mirrored on one half and whose place is no round number, a
-    second material with a mask and vertex colours, and textures of odd sizes."""
+    second material with a mask and vertex colours, a smooth sheet without UVs, and textures of odd
+    sizes."""
     random.seed(1)
     rows, columns, lines = 24, 40, ["mtllib scene.mtl", "usemtl ball"]
     for i, j in itertools.product(range(rows + 1), range(columns + 1)):
@@ -42,11 +44,18 @@ def write_scene(folder):
     lines.append("usemtl leaf")
     for i in range(5):
         lines.append("v %f %f %f %f %f 0.25" % (i, 4 + i % 2, random.random(), i / 4, 1 - i / 4))
-    lines += ["vt 0 0", "vt 1 0", "vt 1 1", "f -5/-3 -4/-2 -3/-1", "f -3/-3 -2/-2 -1/-1", ""]
+    lines += ["vt 0 0", "vt 1 0", "vt 1 1", "f -5/-3 -4/-2 -3/-1", "f -3/-3 -2/-2 -1/-1", "usemtl sheet", "s 1"]
+    first = 1 + sum(line.startswith("v ") for line in lines)
+    for i, j in itertools.product(range(30), range(30)):
+        lines.append("v %f %f %f" % (j / 9, math.sin(i / 5) * math.cos(j / 7), -i / 9))
+    for i, j in itertools.product(range(29), range(29)):
+        corners = (30 * i + j, 30 * i + j + 1, 30 * i + j + 31, 30 * i + j + 30)
+        lines.append("f " + " ".join(str(first + k) for k in corners))
+    lines.append("")
     (folder / "scene.obj").write_text("\n".join(lines))
     (folder / "scene.mtl").write_text(
         "newmtl ball\nmap_Kd color.png\nmap_Pr rough.png\nnorm normal.png\n"
-        "newmtl leaf\nKd 0.5 0.6 0.7\nmap_d mask.png\n")
+        "newmtl leaf\nKd 0.5 0.6 0.7\nmap_d mask.png\nnewmtl sheet\n")
     draw = check_documents.write_png
     draw(folder / "color.png", 22, lambda x, y: (100 + 2 * x, 80 + 3 * x, 60 + x))
     draw(folder / "rough.png", 13, lambda x, y: (19 * x,) * 3)
@@ -143,17 +152,26 @@ class Reader(unittest.TestCase):
         return scene
 
     def test_every_form_of_a_vertex(self):
-        hands, forms = set(), set()
-        for frame in read_cw2mesh.FRAME_FORMS:
-            for positions in ("quantised", "f32"):
+        hands, forms, models = set(), set(), set()
+        decode = read_cw2mesh.FrameDecoder.__init__
+
+        def spy(decoder, form, model, *arguments):
+            models.add((form, model))
+            decode(decoder, form, model, *arguments)
+
+        for frame, positions, compress in itertools.product(
+                read_cw2mesh.FRAME_FORMS, ("quantised", "f32"), ([], ["--compress"])):
+            with self.subTest(frame=frame, positions=positions, compress=compress), \
+                    unittest.mock.patch.object(read_cw2mesh.FrameDecoder, "__init__", spy):
                 scene = self.compare("--textures", "none", "--tangent-frame", frame,
-                                     "--positions", positions)
+                                     "--positions", positions, *compress)
                 hands |= {vertex.handedness for mesh in scene.meshes for vertex in mesh.vertices}
                 forms |= {mesh.forms for mesh in scene.meshes}
         self.assertEqual(hands, {1, -1})
         self.assertEqual({form[1] for form in forms}, set(read_cw2mesh.FRAME_FORMS))
         self.assertEqual({form[0] for form in forms}, {"quantised", "f32"})
         self.assertEqual({form[3] for form in forms}, {"none", "rgba8"})
+        self.assertEqual(models, {(form, model) for form in ("quat48", "quat32") for model in range(3)})
 
     def test_textures(self):
         formats = set()
@@ -190,6 +208,27 @@ class Reader(unittest.TestCase):
             put_checksum(data, 0, header + 24 * len(read_cw2mesh.SECTIONS), 24)
             path.write_bytes(data)
             self.compare_file(path)
+
+    def test_encoded_geometry_that_no_bake_writes(self):
+        """Whatever is in the parts, the end is a scene or a FormatError."""
+        random.seed(4)
+        scene = self.bake("--textures", "none", "--compress").read_bytes()
+        header, ends = read_cw2mesh.HEADER.struct.size, set()
+        for _ in range(60):
+            data = bytearray(scene)
+            for i in (10, 11):
+                place = read_cw2mesh.SECTION.read(data, header + 24 * i)
+                for _ in range(random.choice((0, 1, 3))):
+                    data[place.offset + random.randrange(place.size)] = random.randrange(256)
+                put_checksum(data, place.offset, place.offset + place.size, header + 24 * i + 16)
+            data[24:32] = bytes(8)
+            put_checksum(data, 0, header + 24 * len(read_cw2mesh.SECTIONS), 24)
+            try:
+                read_cw2mesh.parse(bytes(data))
+                ends.add("read")
+            except read_cw2mesh.FormatError:
+                ends.add("refused")
+        self.assertEqual(ends, {"read", "refused"})
 
     def test_damage_is_found(self):
         data = self.bake().read_bytes()
