@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -312,7 +313,10 @@ std::string export_baked(const Settings& settings, const Warn& warn) {
     const common::MappedFile file(settings.input);
     const std::string name = settings.input.string();
     mesh_format::Document document = mesh_format::parse(file.bytes(), name);
-    const mesh_format::DecodedGeometry decoded = decode(document, name);
+    const mesh_format::DecodedGeometry decoded =
+        decode(document, name, [](std::size_t count, const auto& decode_mesh) {
+            tbb::parallel_for(std::size_t{0}, count, decode_mesh);
+        });
     std::vector<std::span<const std::byte>> payloads;
     for (const TextureRecord& texture : document.textures)
         payloads.push_back(document.payload(texture));

@@ -1,3 +1,16 @@
 # find_package(cw2): the library cw2::mesh-format, and cw2_bake() where cw2-bake is built, too.
-include(${CMAKE_CURRENT_LIST_DIR}/cw2-targets.cmake)
+# find_package(cw2 COMPONENTS decode): also cw2::mesh-decode, for what is compressed.
+include(CMakeFindDependencyMacro)
+include(${CMAKE_CURRENT_LIST_DIR}/cw2-mesh-format.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/cw2_bake.cmake OPTIONAL)
+if(decode IN_LIST cw2_FIND_COMPONENTS)
+    find_dependency(meshoptimizer)
+    find_dependency(zstd)
+    include(${CMAKE_CURRENT_LIST_DIR}/cw2-mesh-decode.cmake OPTIONAL RESULT_VARIABLE cw2_decode_FOUND)
+endif()
+foreach(component IN LISTS cw2_FIND_COMPONENTS)
+    if(cw2_FIND_REQUIRED_${component} AND NOT cw2_${component}_FOUND)
+        set(cw2_FOUND FALSE)
+        set(cw2_NOT_FOUND_MESSAGE "this installation of cw2 has no component ${component}")
+    endif()
+endforeach()

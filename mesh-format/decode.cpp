@@ -1,14 +1,14 @@
 #include "mesh-format/decode.h"
 
-#include <fmt/format.h>
 #include <meshoptimizer.h>
-#include <tbb/parallel_for.h>
 #include <zstd.h>
 
 #include <algorithm>
 #include <cstring>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "mesh-format/vertex_stream.h"
 
@@ -72,14 +72,14 @@ std::uint64_t index_end(const MeshRecord& mesh) {
 
 }  // namespace
 
-DecodedGeometry decode(Document& document, std::string_view name) {
+DecodedGeometry decode(Document& document, std::string_view name, const Loop& loop) {
     if (!document.is_encoded()) return {};
     const std::uint64_t stored = document.encoded_vertices.size() +
                                  document.encoded_indices.size() + document.chunks.size_bytes();
     const std::uint64_t claimed = document.scene.vertex_bytes / kLargestRatio +
                                   document.scene.index_count / kLargestRatio * 2;
     if (claimed > stored) {
-        throw FormatError(fmt::format("{}: the scene's sizes are implausible", name));
+        throw FormatError(std::string(name) + ": the scene's sizes are implausible");
     }
     DecodedGeometry geometry{
         std::make_unique_for_overwrite<std::byte[]>(document.scene.vertex_bytes),
@@ -88,7 +88,7 @@ DecodedGeometry decode(Document& document, std::string_view name) {
     const std::vector<Bytes> vertices = parts_of(document.encoded_vertices, count);
     const std::vector<Bytes> indices = parts_of(document.encoded_indices, count);
     // The tasks are the first to touch this memory, each its mesh's and what lies before that.
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    const auto decode_mesh = [&](std::size_t i) {
         const MeshRecord& mesh = document.meshes[i];
         const bool is_first = i == 0;
         std::byte* const mesh_vertices = geometry.vertices.get() + mesh.vertex_offset;
@@ -101,9 +101,15 @@ DecodedGeometry decode(Document& document, std::string_view name) {
             std::fill(mesh_vertices, geometry.vertices.get() + vertex_end(mesh), std::byte{0});
         if (!decode_indices(mesh, indices[i], mesh_indices) ||
             !decode_vertices(mesh, vertices[i], mesh_indices, mesh_vertices)) {
-            throw FormatError(fmt::format("{}: mesh {}: its encoded geometry is damaged", name, i));
+            throw FormatError(std::string(name) + ": mesh " + std::to_string(i) +
+                              ": its encoded geometry is damaged");
         }
-    });
+    };
+    if (loop) {
+        loop(count, decode_mesh);
+    } else {
+        for (std::size_t i = 0; i < count; ++i) decode_mesh(i);
+    }
     const std::span all_vertices(geometry.vertices.get(), document.scene.vertex_bytes);
     const std::span all_indices(geometry.indices.get(), document.scene.index_count);
     const MeshRecord& last = document.meshes.back();

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string_view>
 
@@ -17,10 +18,13 @@ struct DecodedGeometry {
     std::unique_ptr<std::uint16_t[]> indices;
 };
 
-/// Decodes an encoded document mesh by mesh, in parallel, and checks the result, which `document`
-/// then refers to; leaves any other as it is. Throws FormatError, which calls the file `name`,
-/// where the sections are damaged, or claim to be more than a thousand times the size of what is
-/// stored of them and of the chunks.
-DecodedGeometry decode(Document& document, std::string_view name);
+/// Calls a function with each number below a count, in any order, or at once on several threads.
+using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>&)>;
+
+/// Decodes an encoded document mesh by mesh, by `loop` or one after the other, and checks the
+/// result, which `document` then refers to; leaves any other as it is. Throws FormatError, which
+/// calls the file `name`, where the sections are damaged, or claim to be more than a thousand times
+/// the size of what is stored of them and of the chunks.
+DecodedGeometry decode(Document& document, std::string_view name, const Loop& loop = {});
 
 }  // namespace mesh_format

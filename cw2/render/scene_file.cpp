@@ -22,7 +22,10 @@ void read(SceneFile& file, std::span<const std::byte> bytes, const std::string& 
         // All of them need not be in memory beside what becomes of them.
         file.forget(file.document.textures[i]);
     });
-    file.decoded = mesh_format::decode(file.document, name);
+    file.decoded =
+        mesh_format::decode(file.document, name, [](std::size_t count, const auto& decode_mesh) {
+            tbb::parallel_for(std::size_t{0}, count, decode_mesh);
+        });
     file.positions = vertex_positions(file.document);
     file.bounds = bounds_of(file.document.scene, file.positions);
     file.start = start_of(file.document.scene);
