@@ -100,6 +100,7 @@ class Page(unittest.TestCase):
                          list(enumerate(form[0] for form in read_cw2mesh.FORMATS)))
         self.assertIn(f"Format version {read_cw2mesh.VERSION}.", PAGE)
         self.assertIn(f"| version | {read_cw2mesh.VERSION} |", PAGE)
+        self.assertIn(f"format {read_cw2mesh.VERSION};", (ROOT / "CHANGELOG.md").read_text())
 
     def test_checksums(self):
         for size, value in ((0, "none"), (40, "0, 1, 2 ... 39"), (43, "0, 1, 2 ... 42")):
