@@ -422,7 +422,7 @@ class IndexDecoder:
 def find_neighbours(indices, vertex_count):
     """Of each vertex, the three that it is predicted from."""
     neighbours = [(max(v - 1, 0),) * 3 for v in range(vertex_count)]
-    last, new = [(0, 0)] * vertex_count, 0
+    last, new = [(v, v) for v in range(vertex_count)], 0
     for i in range(0, len(indices), 3):
         triangle = indices[i:i + 3]
         while max(triangle) >= new:
@@ -539,14 +539,15 @@ class FrameDecoder:
 
     def of_normal(self, normal, largest):
         """The digits of a frame with this normal whose tangent is the x axis, but one."""
+        normal = [(c + 2 ** 63) % 2 ** 64 - 2 ** 63 for c in normal]
         shift = max(max(abs(c) for c in normal).bit_length() - 15, 0)
-        x, y, z = ((abs(c) >> shift) * (-1 if c < 0 else 1) for c in normal)
-        angle, length = polar(abs(z), abs(y))
-        half_b = polar(length, abs(x))[0] // 2
-        half_a = (4 * ANGLES - angle if z < 0 else angle) // 2
+        x, y, z = (abs(c) >> shift for c in normal)
+        angle, length = polar(z, y)
+        half_b = polar(length, x)[0] // 2
+        half_a = (4 * ANGLES - angle if normal[2] < 0 else angle) // 2
         first = min(2 * ANGLES - half_a if largest == 0 else half_a, ANGLES)
-        digit_a = self.digit_of_angle(-first if y > 0 else first)
-        digit_b = self.digit_of_angle(-half_b if x < 0 else half_b)
+        digit_a = self.digit_of_angle(-first if normal[1] > 0 else first)
+        digit_b = self.digit_of_angle(-half_b if normal[0] < 0 else half_b)
         return [self.zero, digit_b, digit_a] if largest == 0 else [digit_a, digit_b, self.zero]
 
     def expected(self, i, largest):
