@@ -35,6 +35,7 @@ cstdint         | (?:u?int(?:_fast|_least)?(?:8|16|32|64|ptr|max)_t|U?INT\d+_(?:
 cstdio          | (?:[fs]?n?printf|f?puts|f?putc|fputs|putchar|fopen|fclose|fread|fwrite|fseek|ftell|fflush|setvbuf|remove|rename|tmpfile|fileno|rewind|perror|FILE|stdout|stderr|stdin|EOF)\b
 cstdlib         | (?:getenv|setenv|putenv|exit|_Exit|quick_exit|abort|strto\w+|ato[ifl]|malloc|calloc|realloc|free|aligned_alloc|system|EXIT_\w+|div|rand|qsort|mkdtemp|realpath)\b
 cstring         | (?:mem(?:cpy|cmp|set|move|chr)|str(?:len|n?cmp|n?cpy|r?chr|str|error|n?cat|spn|cspn))\b
+ctime           | (?:clock|time|clock_t|time_t|CLOCKS_PER_SEC)\b
 deque           | std::deque\b
 exception       | std::(?:exception|current_exception|rethrow_exception|make_exception_ptr|terminate|uncaught_exceptions)
 filesystem      | (?:std::)?filesystem\b

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "cw2-bake/geometry/compress.h"
 #include "mesh-format/decode.h"
