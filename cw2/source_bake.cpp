@@ -281,9 +281,7 @@ void SourceBake::take(std::string_view text) {
             if (!lines_.back().starts_with(kPrefix) ||
                 lines_.back().find("warning: ") != std::string::npos)
                 tell_(lines_.back());
-        } else if (c == '\r') {
-            text_.clear();
-        } else if (text_ == "\033[" && c == 'K') {
+        } else if (c == '\r' || (text_ == "\033[" && c == 'K')) {
             text_.clear();
         } else {
             text_ += c;

@@ -16,7 +16,7 @@ using bake::ImageError;
 using bake::SampleType;
 
 /// Sets the type in which the samples are kept: the file's own if 8 or 16 bits hold it.
-OIIO::TypeDesc choose_type(OIIO::TypeDesc stored, Image& image) {
+OIIO::TypeDesc choose_type(const OIIO::TypeDesc& stored, Image& image) {
     switch (stored.basetype) {
         case OIIO::TypeDesc::UINT8:
             image.type = SampleType::u8;

@@ -1,6 +1,7 @@
 #include "cw2/vulkan/resources.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <utility>
 
@@ -337,6 +338,7 @@ void Uploader::write_image(VkImage image, const ImageSettings& settings, TexelBl
         const std::size_t row_bytes =
             std::size_t{(width + block.extent - 1) / block.extent} * block.bytes;
         const std::uint32_t row_count = (height + block.extent - 1) / block.extent;
+        assert(row_bytes > 0);
         const auto rows_at_once = static_cast<std::uint32_t>(kStagingBytes / row_bytes) & ~3u;
         for (std::uint32_t row = 0; row < row_count; row += rows_at_once) {
             const std::uint32_t rows = std::min(rows_at_once, row_count - row);

@@ -11,11 +11,11 @@ using namespace small_scene;
 template <typename T>
 void expect_equal(std::span<const T> a, std::span<const T> b) {
     ASSERT_EQ(a.size(), b.size());
-    EXPECT_TRUE(a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+    EXPECT_TRUE(std::ranges::equal(std::as_bytes(a), std::as_bytes(b)));
 }
 
 void expect_equal(const Document& a, const Document& b) {
-    EXPECT_EQ(std::memcmp(&a.scene, &b.scene, sizeof a.scene), 0);
+    expect_equal(std::span(&a.scene, 1), std::span(&b.scene, 1));
     expect_equal(a.meshes, b.meshes);
     expect_equal(a.chunks, b.chunks);
     expect_equal(a.materials, b.materials);
