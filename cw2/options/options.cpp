@@ -42,9 +42,18 @@ void add_to(CLI::App& app, const Setting& setting, Options& options) {
         app.add_option_function<std::vector<std::string>>(name, take_files, setting.description)
             ->type_name(setting.form);
     } else if (setting.form.empty()) {
+        // What CLI11 takes for true and false, and whether it says so, differs by version.
+        const CLI::Validator is_switch(
+            [](const std::string& text) {
+                return text == "true" || text == "false"
+                           ? std::string()
+                           : "a switch with '=' is followed by true or false";
+            },
+            "");
         app.add_flag_function(
-            name, [take_over](std::int64_t count) { take_over(count > 0 ? "true" : "false"); },
-            setting.description);
+               name, [take_over](std::int64_t count) { take_over(count > 0 ? "true" : "false"); },
+               setting.description)
+            ->check(is_switch);
     } else {
         app.add_option_function<std::string>(name, take_over, setting.description)
             ->type_name(setting.form);
@@ -157,9 +166,6 @@ std::optional<Options> parse_options(int argc, const char* const* argv,
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
         throw UsageError(error.what());
-    } catch (const std::logic_error&) {
-        // CLI11 leaves it to std::stoll.
-        throw UsageError("a switch with '=' is followed by true or false");
     }
     if (line.config) {
         apply_config(*line.config, line.settings, line.app, line.options);

@@ -106,7 +106,8 @@ SceneTextures::SceneTextures(const Device& device, const Document& document,
       textures_(document.textures.size() + std::size(kWhiteFormats)),
       merged_of_material_(document.materials.size()),
       repeat_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, settings.anisotropy)),
-      clamp_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, settings.anisotropy)) {
+      clamp_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, settings.anisotropy)),
+      one_texel_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, 1.0f)) {
     std::set<std::uint32_t> needed;
     if (settings.few_kinds) needed = merge_maps(document);
     const auto first_level = [&](std::uint32_t texture) {
@@ -320,7 +321,8 @@ VkDescriptorImageInfo SceneTextures::descriptor(const Document& document, std::s
                                 ? texture.scalar_views[use == MapUse::metalness]
                                 : texture.view;
     const bool clamps = (texture.record.flags & mesh_format::kClampToEdge) != 0;
-    return {clamps ? clamp_.get() : repeat_.get(), view.get(),
+    const Sampler& sampler = texture.is_one_texel ? one_texel_ : clamps ? clamp_ : repeat_;
+    return {sampler.get(), view.get(),
             texture.address ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 }
 

@@ -219,10 +219,13 @@ void read_back(VkCommandBuffer commands, VkImage image, const VkRect2D& area, co
 DescriptorPool make_descriptor_pool(const Device& device, VkDescriptorType type,
                                     std::uint32_t descriptors, std::uint32_t sets) {
     const VkDescriptorPoolSize size{type, descriptors};
-    const VkDescriptorPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                          .maxSets = sets,
-                                          .poolSizeCount = 1,
-                                          .pPoolSizes = &size};
+    // Dear ImGui frees its set.
+    const VkDescriptorPoolCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+        .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
+        .maxSets = sets,
+        .poolSizeCount = 1,
+        .pPoolSizes = &size};
     VkDescriptorPool pool = VK_NULL_HANDLE;
     check(vkCreateDescriptorPool(device.get(), &info, nullptr, &pool), "vkCreateDescriptorPool");
     return {device.get(), pool};

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "cw2/window/key_bindings.h"
@@ -23,6 +24,11 @@ std::string glfw_error() {
 }  // namespace
 
 Window::Library::Library() {
+#ifdef GLFW_PLATFORM
+    // X11 where there is a display of it, as before version 3.4.
+    if (std::getenv("DISPLAY") || !std::getenv("WAYLAND_DISPLAY"))
+        glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
     if (!glfwInit()) {
         throw WindowError(fmt::format(
             "cannot open a window: {}; --output FILE.png renders without one", glfw_error()));
