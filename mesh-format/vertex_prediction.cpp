@@ -23,10 +23,22 @@ class NeighbourFinder {
         }
     }
 
-    void add(const std::uint16_t (&triangle)[3]) {
-        while (std::max({triangle[0], triangle[1], triangle[2]}) >= next_) add_vertex(triangle);
-        for (std::size_t i = 0; i < 3; ++i)
-            last_[triangle[i]] = {triangle[(i + 1) % 3], triangle[(i + 2) % 3]};
+    void add(std::uint16_t p, std::uint16_t q, std::uint16_t r) {
+        const bool p_is_new = p >= next_;
+        const bool q_is_new = q >= next_;
+        const bool r_is_new = r >= next_;
+        if (p_is_new + q_is_new + r_is_new > 1) [[unlikely]] {
+            add_several(p, q, r);
+        } else if (r_is_new) {
+            add_vertex(r, p, q);
+        } else if (q_is_new) {
+            add_vertex(q, r, p);
+        } else if (p_is_new) {
+            add_vertex(p, q, r);
+        }
+        last_[p] = {q, r};
+        last_[q] = {r, p};
+        last_[r] = {p, q};
     }
 
     std::vector<Neighbours> take() { return std::move(neighbours_); }
@@ -38,21 +50,29 @@ class NeighbourFinder {
 
     static Neighbours as(std::uint16_t a) { return {a, a, a}; }
 
-    /// The smallest that is new.
-    void add_vertex(const std::uint16_t (&triangle)[3]) {
-        std::size_t corner = 3;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const bool is_new = triangle[i] >= next_;
-            if (is_new && (corner == 3 || triangle[i] < triangle[corner])) corner = i;
-        }
-        const std::uint16_t v = triangle[corner];
-        const std::uint16_t x = triangle[(corner + 1) % 3];
-        const std::uint16_t y = triangle[(corner + 2) % 3];
+    /// New vertex v of the triangle that goes on with x and y.
+    void add_vertex(std::uint16_t v, std::uint16_t x, std::uint16_t y) {
         next_ = v + 1u;
         if (x < v && y < v) {
             neighbours_[v] = across(v, x, y);
         } else if (x < v || y < v) {
             neighbours_[v] = as(x < v ? x : y);
+        }
+    }
+
+    /// The new vertices of a triangle, the smallest first.
+    void add_several(std::uint16_t p, std::uint16_t q, std::uint16_t r) {
+        for (int i = 0; i < 3; ++i) {
+            const auto comes_first = [&](std::uint32_t v, std::uint32_t x, std::uint32_t y) {
+                return v >= next_ && (x < next_ || v <= x) && (y < next_ || v <= y);
+            };
+            if (comes_first(p, q, r)) {
+                add_vertex(p, q, r);
+            } else if (comes_first(q, r, p)) {
+                add_vertex(q, r, p);
+            } else if (comes_first(r, p, q)) {
+                add_vertex(r, p, q);
+            }
         }
     }
 
@@ -164,13 +184,20 @@ Polar polar(int x, int y) {
             longer * (ratios().secant[ratio / kSecantStep] / 2) / (kOne / 2)};
 }
 
+/// A number of a quantised position.
+std::int64_t number(const std::byte* position, std::size_t axis) {
+    std::uint16_t value = 0;
+    std::memcpy(&value, position + axis * sizeof value, sizeof value);
+    return value;
+}
+
 }  // namespace
 
 std::vector<Neighbours> find_neighbours(std::span<const std::uint16_t> indices,
                                         std::uint32_t vertex_count) {
     NeighbourFinder finder(vertex_count);
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
-        finder.add({indices[i], indices[i + 1], indices[i + 2]});
+        finder.add(indices[i], indices[i + 1], indices[i + 2]);
     return finder.take();
 }
 
@@ -178,14 +205,14 @@ std::vector<Normal> sum_normals(std::span<const std::uint16_t> indices, std::uin
                                 const std::byte* positions, std::size_t stride) {
     std::vector<Normal> sums(vertex_count);
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-        std::array<std::array<std::uint16_t, 3>, 3> p;
-        for (std::size_t k = 0; k < 3; ++k)
-            std::memcpy(&p[k], positions + indices[i + k] * stride, sizeof p[k]);
+        const std::byte* const p[] = {positions + indices[i] * stride,
+                                      positions + indices[i + 1] * stride,
+                                      positions + indices[i + 2] * stride};
         std::array<std::int64_t, 3> u;
         std::array<std::int64_t, 3> v;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            u[axis] = p[1][axis] - p[0][axis];
-            v[axis] = p[2][axis] - p[0][axis];
+            u[axis] = number(p[1], axis) - number(p[0], axis);
+            v[axis] = number(p[2], axis) - number(p[0], axis);
         }
         const Normal normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
                             u[0] * v[1] - u[1] * v[0]};
@@ -201,21 +228,22 @@ std::vector<Normal> sum_normals(std::span<const std::uint16_t> indices, std::uin
 }
 
 template <FrameForm kForm>
-std::array<std::int16_t, 3> FrameCode<kForm>::with_largest(const FrameDigits& frame,
-                                                           std::uint32_t largest) {
+void FrameCode<kForm>::rebased(const FrameDigits& frame, std::uint32_t largest, Digits& others) {
     const std::uint32_t from = frame.top & 3u;
+    if (from == largest) {
+        others = frame.others;
+        return;
+    }
     int q[4];
     for (std::uint32_t i = 0, k = 0; i < 4; ++i)
         q[i] = i == from ? kOne : ratio_of<kForm>(frame.others[k++]);
     // It is not 0 where the two are neighbours on a smooth surface.
     const int divisor = q[largest] == 0 ? 1 : q[largest];
-    std::array<std::int16_t, 3> others;
     for (std::uint32_t i = 0, k = 0; i < 4; ++i) {
         if (i == largest) continue;
         const int ratio = std::clamp(q[i] * kOne / divisor, -kOne, kOne);
         others[k++] = static_cast<std::int16_t>(digit_of<kForm>(ratio));
     }
-    return others;
 }
 
 template <FrameForm kForm>
@@ -231,8 +259,7 @@ int FrameCode<kForm>::of_x_tangent(const FrameDigits& frame) {
 // cos a/2 sin b/2, sin a/2 sin b/2, cos a/2 cos b/2), its normal (sin b, -sin a cos b, cos a cos
 // b).
 template <FrameForm kForm>
-std::array<std::int16_t, 3> FrameCode<kForm>::of_normal(const Normal& normal,
-                                                        std::uint32_t largest) {
+void FrameCode<kForm>::of_normal(const Normal& normal, std::uint32_t largest, Digits& others) {
     std::array<std::uint64_t, 3> sizes;
     for (std::size_t k = 0; k < 3; ++k) {
         const auto number = static_cast<std::uint64_t>(normal[k]);
@@ -246,12 +273,9 @@ std::array<std::int16_t, 3> FrameCode<kForm>::of_normal(const Normal& normal,
     const int half_b = polar(yz.length, n[0]).angle / 2;
     const int half_a = (normal[2] < 0 ? 4 * kAngles - yz.angle : yz.angle) / 2;
     const int first = std::min(largest == 0 ? 2 * kAngles - half_a : half_a, kAngles);
-    const auto digit_a =
+    others[largest == 0 ? 2 : 0] =
         static_cast<std::int16_t>(digit_of_angle<kForm>(normal[1] > 0 ? -first : first));
-    const auto digit_b =
-        static_cast<std::int16_t>(digit_of_angle<kForm>(normal[0] < 0 ? -half_b : half_b));
-    if (largest == 0) return {kZero, digit_b, digit_a};
-    return {digit_a, digit_b, kZero};
+    others[1] = static_cast<std::int16_t>(digit_of_angle<kForm>(normal[0] < 0 ? -half_b : half_b));
 }
 
 template struct FrameCode<FrameForm::quat48>;

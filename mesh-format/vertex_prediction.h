@@ -38,9 +38,12 @@ using Normal = std::array<std::int64_t, 3>;
 std::vector<Normal> sum_normals(std::span<const std::uint16_t> indices, std::uint32_t vertex_count,
                                 const std::byte* positions, std::size_t stride);
 
+/// One for each component of a quaternion but the largest.
+using Digits = std::array<std::int16_t, 3>;
+
 /// A tangent frame of quat48 or quat32, taken apart; tangent_frame.h says how.
 struct FrameDigits {
-    std::array<std::int16_t, 3> others;  ///< one for each component but the largest
+    Digits others;
     std::uint16_t top;  ///< the largest component's number, in quat32 up to 8; + 4 left-handed
 };
 
@@ -56,22 +59,18 @@ struct FrameCode {
     static FrameDigits take_apart(const std::byte* in);
     static void put_together(const FrameDigits& frame, std::byte* out);
 
-    /// The digits of the same rotation if component `largest` is taken for the largest one.
-    static std::array<std::int16_t, 3> rebased(const FrameDigits& frame, std::uint32_t largest) {
-        return (frame.top & 3u) == largest ? frame.others : with_largest(frame, largest);
-    }
+    /// Sets `others` to the digits of the same rotation if component `largest` is taken for the
+    /// largest one. Here and below there is no result: it would be put together from words and
+    /// read as something longer, for which processors wait.
+    static void rebased(const FrameDigits& frame, std::uint32_t largest, Digits& others);
 
     /// What digit others[partner(largest)] is where the tangent is the x axis, made orthogonal to
     /// the normal: then the bitangent's x, 2 (xy - zw) of the quaternion, is 0.
     static int of_x_tangent(const FrameDigits& frame);
 
-    /// The digits of such a frame if it has this normal, except for others[partner(largest)].
-    /// Component `largest` is x or w, as it always is in such frames.
-    static std::array<std::int16_t, 3> of_normal(const Normal& normal, std::uint32_t largest);
-
- private:
-    static std::array<std::int16_t, 3> with_largest(const FrameDigits& frame,
-                                                    std::uint32_t largest);
+    /// Sets `others` to the digits of such a frame if it has this normal, except for
+    /// others[partner(largest)]. Component `largest` is x or w, as it always is in such frames.
+    static void of_normal(const Normal& normal, std::uint32_t largest, Digits& others);
 };
 
 /// The place among the others of that component whose product with the largest is xy or zw.
@@ -104,12 +103,12 @@ inline FrameDigits FrameCode<kForm>::take_apart(const std::byte* in) {
 template <FrameForm kForm>
 inline void FrameCode<kForm>::put_together(const FrameDigits& frame, std::byte* out) {
     if constexpr (kWide) {
-        const unsigned high[] = {frame.top >> 2u & 1u, frame.top & 1u, frame.top >> 1u & 1u};
-        std::array<std::uint16_t, 3> words;
+        // In one register: processors wait where words are written and read as something longer.
+        const std::uint64_t high[] = {frame.top >> 2u & 1u, frame.top & 1u, frame.top >> 1u & 1u};
+        std::uint64_t code = 0;
         for (std::size_t k = 0; k < 3; ++k)
-            words[k] =
-                static_cast<std::uint16_t>(static_cast<unsigned>(frame.others[k]) | high[k] << 15);
-        std::memcpy(out, &words, sizeof words);
+            code |= (static_cast<std::uint64_t>(frame.others[k]) | high[k] << 15) << (16 * k);
+        std::memcpy(out, &code, 6);
     } else {
         std::uint32_t code = frame.top;
         for (std::size_t k = 3; k-- > 0;)

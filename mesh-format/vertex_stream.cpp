@@ -100,7 +100,9 @@ class Words {
             Values value = predicted(i, vertices);
             for (std::size_t k = 0; k < kNumbers; ++k)
                 value[k] = unordered(static_cast<Word>(value[k] + words[k][i]));
-            std::memcpy(vertices + i * stride_, &value, sizeof value);
+            // One by one: processors wait where words are written and read as something longer.
+            for (std::size_t k = 0; k < kNumbers; ++k)
+                std::memcpy(vertices + i * stride_ + k * sizeof(Word), &value[k], sizeof(Word));
         }
     }
 
@@ -109,8 +111,10 @@ class Words {
 
     static Values at(const std::byte* vertex) {
         Values values;
-        std::memcpy(&values, vertex, sizeof values);
-        for (Word& value : values) value = ordered(value);
+        for (std::size_t k = 0; k < kNumbers; ++k) {
+            std::memcpy(&values[k], vertex + k * sizeof(Word), sizeof(Word));
+            values[k] = ordered(values[k]);
+        }
         return values;
     }
 
@@ -168,7 +172,6 @@ class Frames {
 
  private:
     using Code = FrameCode<kForm>;
-    using Digits = std::array<std::int16_t, 3>;
 
     /// A vertex's frame to what it differs from the expected one by, or the other way.
     template <bool kEncode>
@@ -179,7 +182,8 @@ class Frames {
             tops_[i] = static_cast<std::uint8_t>(frame.top ^ top_before);
         else
             frame.top = tops_[i] ^ top_before;
-        const Digits expected = expected_at(i);
+        Digits expected;
+        expect(i, expected);
         if constexpr (kModel != FrameModel::neighbours) {
             const std::uint32_t place = partner(frame.top & 3u);
             const std::uint32_t first = place == 0 ? 1 : 0;
@@ -194,21 +198,19 @@ class Frames {
     }
 
     /// Modulo 2^16.
-    Digits expected_at(std::size_t i) const {
+    void expect(std::size_t i, Digits& expected) const {
         const std::uint32_t largest = frames_[i].top & 3u;
         if (kModel == FrameModel::x_tangent_of_positions && (largest == 0 || largest == 3))
-            return Code::of_normal(normals_[i], largest);
-        if (i == 0) return {Code::kZero, Code::kZero, Code::kZero};
+            return Code::of_normal(normals_[i], largest, expected);
+        if (i == 0) return expected.fill(Code::kZero);
         const Neighbours& at = neighbours_[i];
         const FrameDigits& a = frames_[at.a];
         const FrameDigits& b = frames_[at.b];
         const FrameDigits& c = frames_[at.c];
         if (((a.top ^ largest) | (b.top ^ largest) | (c.top ^ largest)) & 3u) [[unlikely]]
-            return Code::rebased(a, largest);
-        Digits sum;
+            return Code::rebased(a, largest, expected);
         for (std::size_t k = 0; k < 3; ++k)
-            sum[k] = static_cast<std::int16_t>(a.others[k] + b.others[k] - c.others[k]);
-        return sum;
+            expected[k] = static_cast<std::int16_t>(a.others[k] + b.others[k] - c.others[k]);
     }
 
     /// Differences are modulo the number of levels, and as small as that allows.
@@ -221,7 +223,8 @@ class Frames {
             word = zigzag(static_cast<std::uint16_t>(difference));
         } else {
             const int sum = expected + static_cast<std::int16_t>(word);
-            const int rest = sum % Code::kLevels;
+            // Short for 32,768 levels: the next vertex waits for it.
+            const int rest = Code::kWide ? sum & (Code::kLevels - 1) : sum % Code::kLevels;
             digit = static_cast<std::int16_t>(rest < 0 ? rest + Code::kLevels : rest);
         }
     }
