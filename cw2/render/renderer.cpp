@@ -84,6 +84,9 @@ interop::SceneUniforms scene_uniforms(const Scene& scene, const FrameTarget& tar
 
 PipelineKey pipeline_key(const Draw& draw, Side side, const FrameSettings& settings) {
     if (settings.one_pipeline) side.view = interop::kViewOfDisplay;
+    // What a material has none of makes no other pipeline.
+    side.alpha_mask |= !draw.alpha_mask;
+    side.normal_map |= draw.constants.normal_map == interop::kNormalMapAbsent;
     return {.shading = draw.shading,
             .forms = draw.forms,
             .side = side,
