@@ -20,7 +20,7 @@ namespace {
 using mesh_format::MeshRecord;
 using Bytes = std::vector<std::byte>;
 
-// Measured on a scene of 262 k triangles: level 19 is 1 % smaller and takes 10 times as long.
+// Measured on a scene of 262 k triangles: level 15 is 2 % smaller and takes 5 times as long.
 constexpr int kZstdLevel = 9;
 
 /// A Zstandard frame around `stream`, of which the first `first` bytes and each `next` after them
@@ -59,7 +59,9 @@ Bytes encode_indices(const PackedGeometry& geometry, const MeshRecord& mesh) {
     stream.resize(
         meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(stream.data()), stream.size(),
                                   geometry.indices.data() + mesh.first_index, mesh.index_count));
-    return zstd_frame(stream, stream.size(), stream.size());
+    // A byte, one for each triangle, and then what those leave open.
+    const std::size_t first = 1 + mesh.index_count / 3;
+    return zstd_frame(stream, first, stream.size() - first);
 }
 
 /// The sizes of the parts, then the parts.
