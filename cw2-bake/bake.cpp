@@ -305,6 +305,7 @@ std::string run_stages(const Settings& settings, const Warn& warn, StageClock& c
 }  // namespace
 
 std::string export_baked(const Settings& settings, const Warn& warn) {
+    WarningFilter warnings(warn);
     if (!is_gltf(settings.output))
         throw BakeError(settings.input.string() + ": is baked already; -o FILE.glb exports it");
     refuse_overwriting(settings, {settings.input});
@@ -320,15 +321,19 @@ std::string export_baked(const Settings& settings, const Warn& warn) {
     std::vector<std::span<const std::byte>> payloads;
     for (const TextureRecord& texture : document.textures)
         payloads.push_back(document.payload(texture));
-    const std::uint64_t bytes = write_export(document, payloads, settings, warn);
+    const std::uint64_t bytes = write_export(document, payloads, settings, warnings.filtered());
+    warnings.tell_rest();
     if (settings.depfile) write_depfile(*settings.depfile, rule);
     return fmt::format("{}\n{}", settings.output.string(), export_summary(document, bytes));
 }
 
 std::string bake(const Settings& settings, const Warn& warn) {
     StageClock clock;
+    WarningFilter warnings(warn);
     try {
-        return run_stages(settings, warn, clock);
+        std::string result = run_stages(settings, warnings.filtered(), clock);
+        warnings.tell_rest();
+        return result;
     } catch (const std::bad_alloc&) {
         throw BakeError(fmt::format("{}: there is not enough memory for the stage '{}'",
                                     settings.input.string(), clock.at_work()));

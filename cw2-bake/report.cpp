@@ -19,8 +19,11 @@ using mesh_format::UvForm;
 std::string position_error(const Document& document, const Counts& counts) {
     const float error = document.scene.position_error;
     if (error == 0.0f) return "0";
+    // Of a scene that is all but a point for floats, or of a forged file, anything.
+    constexpr double kMostParts = 1e15;
+    const double parts = std::clamp(double{counts.extent} / double{error}, 0.0, kMostParts);
     return fmt::format("{:.2g} (1/{} of the extent)", error,
-                       grouped(static_cast<std::uint64_t>(counts.extent / error)));
+                       grouped(static_cast<std::uint64_t>(parts)));
 }
 
 bool in_blocks(const TextureRecord& texture) {

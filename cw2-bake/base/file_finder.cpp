@@ -3,6 +3,7 @@
 #include <wctype.h>
 
 #include <algorithm>
+#include <climits>
 #include <clocale>
 #include <numeric>
 #include <system_error>
@@ -89,9 +90,12 @@ std::vector<std::string> readings_of(std::string_view name) {
 }
 
 const FileFinder::Listing& FileFinder::list(const fs::path& folder) {
-    const auto [entry, fresh] = listings_.try_emplace(folder);
-    Listing& listing = entry->second;
-    if (!fresh) return listing;
+    static const Listing kEmpty;
+    const auto known = listings_.find(folder);
+    if (known != listings_.end()) return known->second;
+    if (entries_left_ == 0) return kEmpty;
+    entries_left_ -= std::min(entries_left_, kEntriesOfFolder);
+    Listing& listing = listings_[folder];
     std::error_code error;
     fs::directory_iterator at(folder.empty() ? "." : folder, error);
     for (; !error && at != fs::directory_iterator(); at.increment(error)) {
@@ -159,6 +163,8 @@ std::string FileFinder::near_misses(const fs::path& named) {
 }
 
 FoundFile FileFinder::find(const fs::path& folder, std::span<const std::string> readings) {
+    // No file has a longer name, whatever the case.
+    if (readings.front().size() >= PATH_MAX) return {folder / readings.front(), false};
     for (const std::string& reading : readings)
         if (is_there(folder / reading)) return {folder / reading, true};
     const auto taken = [](const fs::path& file) {

@@ -21,10 +21,11 @@ struct FoundFile {
 };
 
 /// Keeps what it learns of folders while it lives. It looks at no more than kMostEntries entries of
-/// folders, and then only for files as they are named.
+/// folders, of which each counts as kEntriesOfFolder more, and then only for files as they are
+/// named.
 class FileFinder {
  public:
-    static constexpr std::size_t kMostEntries = 200'000;
+    static constexpr std::size_t kMostEntries = 200'000, kEntriesOfFolder = 16;
 
     /// The file that something in `folder` names. In this order: one of the `readings` of the name
     /// (relative to `folder`, or absolute), the likeliest first; one of them in another case, where

@@ -58,12 +58,16 @@ std::string take_statement(std::string_view text, std::size_t& offset) {
 }
 
 std::size_t line_number(std::string_view text, std::size_t offset) {
-    std::size_t number = 1;
-    for (std::size_t i = 0; i < std::min(offset, text.size()); ++i) {
-        const bool first_of_crlf = text.substr(i, 2) == "\r\n";
-        if (is_line_end(text[i]) && !first_of_crlf) ++number;
+    return LineCounter(text).at(offset);
+}
+
+std::size_t LineCounter::at(std::size_t offset) {
+    if (offset < offset_) *this = LineCounter(text_);
+    for (const std::size_t end = std::min(offset, text_.size()); offset_ < end; ++offset_) {
+        const bool first_of_crlf = text_.substr(offset_, 2) == "\r\n";
+        if (is_line_end(text_[offset_]) && !first_of_crlf) ++line_;
     }
-    return number;
+    return line_;
 }
 
 std::string in_quotes(std::string_view text) {

@@ -39,8 +39,24 @@ std::size_t line_end(std::string_view text, std::size_t offset);
 /// `offset` to the line after it.
 std::string take_statement(std::string_view text, std::size_t& offset);
 
-/// The number of the line, from 1, that holds text[offset]. Linear in `offset`: for messages.
+/// The number of the line, from 1, that holds text[offset]. Linear in `offset`: for the one message
+/// of an error.
 std::size_t line_number(std::string_view text, std::size_t offset);
+
+/// Tells line numbers one after the other. Linear in the largest offset where none is below the one
+/// before it.
+class LineCounter {
+ public:
+    explicit LineCounter(std::string_view text) : text_(text) {}
+
+    /// As line_number() tells it.
+    std::size_t at(std::size_t offset);
+
+ private:
+    std::string_view text_;
+    std::size_t offset_ = 0;
+    std::size_t line_ = 1;  // that holds text_[offset_]
+};
 
 /// `text` in quotes, fit for a message: shortened, and without control characters.
 std::string in_quotes(std::string_view text);

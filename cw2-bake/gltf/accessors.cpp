@@ -75,7 +75,16 @@ std::span<const std::byte> GltfAccessors::view_bytes(int index) {
     const auto& view = file_.model.bufferViews[static_cast<std::size_t>(index)];
     if (view.extensions.contains(kMeshoptExtension)) {
         const auto [entry, fresh] = decompressed_.try_emplace(index);
-        if (fresh) entry->second = decode_meshopt(file_, static_cast<std::size_t>(index));
+        if (fresh) {
+            // Views that share compressed bytes would make any number of decoded ones of them.
+            const auto& extension = view.extensions.at(kMeshoptExtension);
+            compressed_bytes_ +=
+                static_cast<std::size_t>(extension.Get("byteLength").GetNumberAsInt());
+            if (compressed_bytes_ > file_.size)
+                fail_at(file_.path, fmt::format("/bufferViews/{}", index),
+                        "its compressed bytes belong to other views, too");
+            entry->second = decode_meshopt(file_, static_cast<std::size_t>(index));
+        }
         return entry->second;
     }
     return file_.view_bytes(index);
@@ -130,8 +139,6 @@ std::vector<std::byte> GltfAccessors::packed_elements(int index) {
         elements = view_elements(index, accessor.bufferView, accessor.byteOffset, accessor.count,
                                  element_bytes, true);
     } else {
-        // All zeros: the only elements that take no bytes of the file.
-        constexpr std::size_t kMostZeros = std::size_t{1} << 24;
         if (accessor.count > kMostZeros) fail(index, "claims too many elements without a view");
         elements.resize(accessor.count * element_bytes);
     }

@@ -21,6 +21,10 @@ class GltfAccessors {
  public:
     GltfAccessors(const GltfFile& file, const Warn& warn) : file_(file), warn_(warn) {}
 
+    /// Elements of an accessor without a view, all zeros: the only ones that take no bytes of the
+    /// file.
+    static constexpr std::size_t kMostZeros = std::size_t{1} << 24;
+
     std::size_t count(int accessor) const { return at(accessor).count; }
     int components(int accessor) const;
 
@@ -62,6 +66,7 @@ class GltfAccessors {
     const Warn& warn_;
     std::map<int, std::vector<float>> floats_;
     std::map<int, std::vector<std::byte>> decompressed_;  ///< buffer views
+    std::size_t compressed_bytes_ = 0;                    ///< of those
     std::set<int> not_finite_;                            ///< accessors of which a warning told
 };
 

@@ -33,6 +33,10 @@ class Decoder {
         const std::string place = pointer + "/extensions/" + kDracoExtension;
         const auto view = extension->second.Get("bufferView").GetNumberAsInt();
         const auto& ids = extension->second.Get("attributes");
+        const std::span<const std::byte> data = file_.view_bytes(view);
+        // Primitives that share their bytes would make any number of decoded ones of them.
+        bytes_ += data.size();
+        if (bytes_ > file_.size) fail_at(file_.path, place, "its bytes belong to others, too");
         DracoMesh mesh;
         std::vector<int*> accessors;  // of the attributes
         for (auto& [name, accessor] : primitive.attributes) {
@@ -44,7 +48,7 @@ class Decoder {
                  tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(described.type))});
             accessors.push_back(&accessor);
         }
-        read(file_.view_bytes(view), mesh, place);
+        read(data, mesh, place);
         for (std::size_t i = 0; i < accessors.size(); ++i) {
             tinygltf::Accessor described =
                 model_.accessors[static_cast<std::size_t>(*accessors[i])];
@@ -86,6 +90,7 @@ class Decoder {
 
     GltfFile& file_;
     tinygltf::Model& model_;
+    std::size_t bytes_ = 0;  // that were decoded
 };
 
 }  // namespace

@@ -66,21 +66,48 @@ std::uint64_t take_count(std::span<const std::byte>& data, bool packed) {
     return value;
 }
 
-/// The library takes memory for as many triangles as an edgebreaker stream claims to hold, before
-/// it looks at what follows. Real ones hold a few a byte, and at most some hundreds.
-/// See https://google.github.io/draco/spec/, sections 3.1 and 7.1.
+void skip(std::span<const std::byte>& data, std::uint64_t count) {
+    data = data.subspan(std::min<std::uint64_t>(count, data.size()));
+}
+
+/// Names and values, and more of such with names of their own.
+void skip_metadata(std::span<const std::byte>& data, int depth) {
+    constexpr int kDeepest = 16;
+    if (depth > kDeepest) throw std::runtime_error("its metadata is nested too deep");
+    for (std::uint64_t i = take_count(data, true); i > 0 && !data.empty(); --i) {
+        skip(data, 1 + std::to_integer<std::uint64_t>(data.front()));
+        skip(data, take_count(data, true));
+    }
+    for (std::uint64_t i = take_count(data, true); i > 0 && !data.empty(); --i) {
+        skip(data, 1 + std::to_integer<std::uint64_t>(data.front()));
+        skip_metadata(data, depth + 1);
+    }
+}
+
+/// The library takes memory for as many triangles and vertices as a stream claims to hold, before
+/// it looks at what follows; and entropy codes may take no byte for a value. Real ones hold a few a
+/// byte, and at most some tens. See https://google.github.io/draco/spec/, sections 3 to 5 and 7.
 void check_claims(std::span<const std::byte> data) {
     constexpr std::size_t kHeaderBytes = 11;
     if (data.size() <= kHeaderBytes) return;
     const auto at = [&](std::size_t i) { return std::to_integer<int>(data[i]); };
     const int version = 256 * at(5) + at(6);
-    const bool is_edgebreaker = at(8) == 1, has_metadata = (at(10) & 0x80) != 0;
-    if (!is_edgebreaker || has_metadata) return;
-    std::span<const std::byte> rest = data.subspan(kHeaderBytes + 1);
-    const bool packed = version >= 0x200;
-    if (version < 0x202) take_count(rest, packed);
-    const std::uint64_t vertices = take_count(rest, packed), triangles = take_count(rest, packed);
-    if (std::max(vertices, triangles) > (1u << 20) + (std::uint64_t{data.size()} << 12))
+    const bool is_edgebreaker = at(8) == 1, has_metadata = version >= 0x103 && (at(10) & 0x80) != 0;
+    std::span<const std::byte> rest = data.subspan(kHeaderBytes);
+    if (has_metadata) {
+        for (std::uint64_t i = take_count(rest, true); i > 0 && !rest.empty(); --i) {
+            take_count(rest, true);  // which attribute
+            skip_metadata(rest, 0);
+        }
+        skip_metadata(rest, 0);
+    }
+    if (is_edgebreaker) {
+        skip(rest, 1);                                            // how it is traversed
+        if (version < 0x202) take_count(rest, version >= 0x200);  // new vertices
+    }
+    const bool packed = version >= (is_edgebreaker ? 0x200 : 0x202);
+    const std::uint64_t first = take_count(rest, packed), second = take_count(rest, packed);
+    if (std::max(first, second) > (1u << 21) + std::uint64_t{64} * data.size())
         throw std::runtime_error("it claims to hold more than its bytes can");
 }
 

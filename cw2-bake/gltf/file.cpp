@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 #include "common/file_kind.h"
 #include "cw2-bake/base/file_finder.h"
@@ -242,9 +245,12 @@ class Loader {
         if (!found.exists && !found.note.empty()) throw BakeError(found.note);
         if (!found.note.empty())
             warn_(fmt::format("{}: /buffers/{}: {}", file_.path.string(), index, found.note));
-        const Bytes bytes = file_.mapped.emplace_back(found.file).bytes();
-        file_.buffer_files.push_back(found.file);
-        return bytes;
+        const auto [known, fresh] = mapped_.try_emplace(found.file);
+        if (fresh) {
+            known->second = file_.mapped.emplace_back(found.file).bytes();
+            file_.buffer_files.push_back(found.file);
+        }
+        return known->second;
     }
 
     std::filesystem::path unique_name(const json& image, std::size_t index) const {
@@ -260,8 +266,18 @@ class Loader {
         if ((uri == image.end()) == (view == image.end()))
             throw BakeError("needs either a uri or a bufferView");
         if (view != image.end()) {
-            const Bytes bytes = view_bytes(array("bufferViews")[view->get<std::size_t>()]);
-            found.embedded = std::make_shared<std::vector<std::byte>>(bytes.begin(), bytes.end());
+            const auto view_index = view->get<std::size_t>();
+            const Bytes bytes = view_bytes(array("bufferViews")[view_index]);
+            const auto [known, fresh] = shared_.try_emplace(view_index);
+            if (fresh) {
+                embedded_bytes_ += bytes.size();
+                if (embedded_bytes_ > file_.size)
+                    throw BakeError("its bytes belong to other images, too");
+                known->second = {
+                    unique_name(image, index),
+                    std::make_shared<std::vector<std::byte>>(bytes.begin(), bytes.end())};
+            }
+            std::tie(found.file, found.embedded) = known->second;
         } else if (is_data(uri->get_ref<const std::string&>())) {
             found.embedded = std::make_shared<std::vector<std::byte>>(
                 decode_data(uri->get_ref<const std::string&>()));
@@ -271,7 +287,7 @@ class Loader {
             found.file = named.file;
             found.note = named.note;
         }
-        if (found.embedded) found.file = unique_name(image, index);
+        if (found.embedded && found.file.empty()) found.file = unique_name(image, index);
         if (is_ktx2(image, found)) throw BakeError("is a KTX2 texture, which is not read");
     }
 
@@ -297,6 +313,10 @@ class Loader {
     Bytes binary_;
     const Warn& warn_;
     FileFinder finder_;
+    std::map<std::filesystem::path, Bytes> mapped_;
+    /// By buffer view: images may share one, and are then one.
+    std::map<std::size_t, std::pair<std::filesystem::path, decltype(GltfImage::embedded)>> shared_;
+    std::size_t embedded_bytes_ = 0;  // of those
 };
 
 }  // namespace
@@ -322,6 +342,8 @@ GltfFile load_gltf(const std::filesystem::path& path, const Warn& warn) {
     json root = parse_gltf_json(chunks.json, path);
     Loader loader(file, root, chunks.binary, warn);
     loader.load_buffers();
+    for (const auto& part : file.mapped) file.size += part.bytes().size();
+    for (const auto& part : file.decoded) file.size += part.size();
     loader.find_images();
     file.unread = find_unread(root);
     const auto views = root.find("bufferViews");

@@ -36,6 +36,7 @@ struct GltfFile {
     std::vector<GltfImage> images;
     std::vector<std::filesystem::path> buffer_files;  ///< that were read
     std::vector<std::string> unread;                  ///< what find_unread() says
+    std::size_t size = 0;  ///< bytes of it and of its buffers: what it claims is held against these
 
     /// The bytes of a view as they lie in its buffer. Throws BakeError where it reaches past it.
     std::span<const std::byte> view_bytes(int view) const;

@@ -203,11 +203,12 @@ GltfPrimitives::GltfPrimitives(const GltfFile& file, const GltfNodes& nodes, con
       scene_(scene),
       accessors_(file, warn),
       converter_(file, warn) {
-    // Nodes may show a mesh again and again; a small file must not claim all memory.
+    // Nodes may show a mesh again and again, and accessors share their bytes; a small file must not
+    // claim all memory, or all day.
     constexpr std::size_t kAlways = std::size_t{1} << 24, kCornersPerByte = 64;
-    std::size_t bytes = 0;
-    for (const auto& buffer : file.buffers) bytes += buffer.size();
-    most_corners_ = std::clamp(kCornersPerByte * bytes, kAlways, std::size_t{kAbsent} - 1);
+    constexpr std::size_t kValuesAlways = std::size_t{1} << 28, kValuesPerByte = 16;
+    most_corners_ = std::clamp(kCornersPerByte * file.size, kAlways, std::size_t{kAbsent} - 1);
+    most_values_ = std::max(kValuesPerByte * file.size, kValuesAlways);
 }
 
 const GltfPrimitives::Material& GltfPrimitives::material(int index) {
@@ -226,30 +227,58 @@ const std::vector<glm::dmat4>& GltfPrimitives::joints(int skin) {
     return entry->second;
 }
 
-void GltfPrimitives::expect_node(int node) {
-    const int mesh = file_.model.nodes[static_cast<std::size_t>(node)].mesh;
-    if (mesh < 0) return;
-    for (const auto& primitive : file_.model.meshes[static_cast<std::size_t>(mesh)].primitives) {
+/// As many numbers as reading it reads; where it claims more than there are, reading it fails.
+std::size_t GltfPrimitives::values_of(int index) const {
+    const auto& accessor = file_.model.accessors[static_cast<std::size_t>(index)];
+    const auto& views = file_.model.bufferViews;
+    const std::size_t most = accessor.bufferView < 0
+                                 ? GltfAccessors::kMostZeros
+                                 : views[static_cast<std::size_t>(accessor.bufferView)].byteLength;
+    std::size_t elements = std::min(accessor.count, most);
+    if (accessor.sparse.isSparse) elements += static_cast<std::size_t>(accessor.sparse.count);
+    return elements * static_cast<std::size_t>(accessors_.components(index));
+}
+
+/// Counts what read_arrays() and read_indices() may read: of the attributes what the primitive
+/// before did not read, but joints and weights always.
+void GltfPrimitives::expect_values(const tinygltf::Node& node,
+                                   const tinygltf::Primitive& primitive) {
+    std::set<int> read;
+    for (const auto& [name, accessor] : primitive.attributes) {
+        const bool is_of_skin = name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_");
+        if (is_of_skin ? node.skin >= 0
+                       : read.insert(accessor).second && !read_last_.contains(accessor))
+            values_ += values_of(accessor);
+    }
+    read_last_ = std::move(read);
+    for (const auto& target : primitive.targets)
+        for (const auto& [name, accessor] : target) values_ += values_of(accessor);
+    if (primitive.indices >= 0) values_ += values_of(primitive.indices);
+    if (node.skin < 0 || !skins_.insert(node.skin).second) return;
+    const int matrices = file_.model.skins[static_cast<std::size_t>(node.skin)].inverseBindMatrices;
+    if (matrices >= 0) values_ += values_of(matrices);
+}
+
+void GltfPrimitives::expect_node(int node_index) {
+    const auto& node = file_.model.nodes[static_cast<std::size_t>(node_index)];
+    if (node.mesh < 0) return;
+    for (const auto& primitive :
+         file_.model.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
         const int positions = attribute_of(primitive, "POSITION");
         if (positions < 0) continue;
-        const std::size_t count = accessors_.count(positions);
-        const bool first_time = read_.insert(positions).second;
-        if (std::exchange(read_last_, positions) != positions && !first_time) read_again_ += count;
-        read_again_ += count * primitive.targets.size();
+        expect_values(node, primitive);
         const int counted = primitive.indices >= 0 ? primitive.indices : positions;
         const bool is_list = primitive.mode == TINYGLTF_MODE_TRIANGLES;
         corners_ += accessors_.count(counted) * (is_list ? 1 : 3);
     }
-    // Only the latest accessor is kept.
-    constexpr std::size_t kMostReads = std::size_t{1} << 33;
-    if (read_again_ > kMostReads) {
-        fail_at(file_.path, fmt::format("/meshes/{}", mesh),
+    if (values_ > most_values_) {
+        fail_at(file_.path, fmt::format("/meshes/{}", node.mesh),
                 fmt::format("its morph targets are so many, or its nodes take turns with others so "
-                            "often, that more than {} positions would be read",
-                            kMostReads));
+                            "often, that more than {} numbers would be read",
+                            most_values_));
     }
     if (corners_ > most_corners_) {
-        fail_at(file_.path, fmt::format("/meshes/{}", mesh),
+        fail_at(file_.path, fmt::format("/meshes/{}", node.mesh),
                 fmt::format("its nodes give the scene more than {} corners, implausible for the "
                             "file's bytes",
                             most_corners_));

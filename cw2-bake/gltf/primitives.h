@@ -53,6 +53,8 @@ class GltfPrimitives {
                        const Material& material, const std::string& place);
     std::vector<std::uint32_t> read_indices(const tinygltf::Primitive& primitive,
                                             std::size_t vertices, const std::string& place);
+    std::size_t values_of(int index) const;
+    void expect_values(const tinygltf::Node& node, const tinygltf::Primitive& primitive);
     void add_primitive(int node, const tinygltf::Primitive& primitive, const std::string& place);
 
     const GltfFile& file_;
@@ -66,9 +68,10 @@ class GltfPrimitives {
     std::vector<std::uint32_t>
         new_index_;  ///< of the vertices of the primitive at hand; else kUnused
     std::size_t corners_ = 0;
-    std::set<int> read_;  ///< accessors of positions
-    int read_last_ = -1;
-    std::size_t read_again_ = 0;  ///< positions of targets, and where others were in between
+    std::set<int> read_last_;  ///< accessors that the primitive before keeps
+    std::set<int> skins_;      ///< that were expected
+    std::size_t most_values_;  ///< to be read
+    std::size_t values_ = 0;
     std::size_t most_corners_;
     std::size_t points_or_lines_ = 0;
     std::string first_points_or_lines_;

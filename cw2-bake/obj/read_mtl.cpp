@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "common/io.h"
@@ -32,7 +34,12 @@ struct Statements {
     struct LeftOut {
         std::string key, place, kind, word;
     };
-    std::vector<LeftOut> left_out;
+    std::vector<LeftOut> left_out;  // each key once
+    std::unordered_set<std::string> left_out_keys;
+
+    void leave_out(const std::string& key, const std::string& place, const std::string& kind) {
+        if (left_out_keys.insert(key).second) left_out.push_back({key, place, kind});
+    }
 };
 
 /// What is warned of once, whatever the number of materials.
@@ -50,16 +57,17 @@ class Notes {
         std::size_t materials;
     };
     std::vector<Note> notes_;
+    std::unordered_map<std::string, std::size_t> by_kind_;
 };
 
 void Notes::add(const std::string& kind, std::string_view place, std::string_view word,
                 std::size_t material) {
-    const auto same = std::ranges::find(notes_, kind, &Note::kind);
-    if (same == notes_.end()) {
+    const auto [same, fresh] = by_kind_.try_emplace(kind, notes_.size());
+    if (fresh) {
         notes_.push_back({kind, std::string(place), std::string(word), material, 1});
-    } else if (same->material != material) {
-        same->material = material;
-        ++same->materials;
+    } else if (Note& note = notes_[same->second]; note.material != material) {
+        note.material = material;
+        ++note.materials;
     }
 }
 
@@ -73,8 +81,9 @@ void Notes::tell(const Warn& warn) const {
 
 class MtlReader {
  public:
-    MtlReader(const std::filesystem::path& path, std::string_view text, const Warn& warn)
-        : path_(path), text_(text), warn_(warn) {}
+    MtlReader(const std::filesystem::path& path, std::string_view text, FileFinder& finder,
+              const Warn& warn)
+        : path_(path), text_(text), warn_(warn), finder_(finder) {}
 
     std::vector<MtlMaterial> read(const std::function<bool(std::string_view)>& wanted);
 
@@ -101,7 +110,7 @@ class MtlReader {
     const std::filesystem::path& path_;
     std::string_view text_;
     const Warn& warn_;
-    FileFinder finder_;
+    FileFinder& finder_;
     std::size_t line_ = 1;  // of the statement at hand
     std::size_t material_count_ = 0;
     Statements material_;
@@ -245,8 +254,8 @@ void MtlReader::other_statement(const std::string& key, std::string_view keyword
     if (key == "illum") {
         const auto model = as_number(take_word(words));
         if (model == 4.0f || model == 9.0f) {
-            material_.left_out.push_back(
-                {"glass", place(), "illum 4 or 9, glass, is not supported and left out"});
+            material_.leave_out("glass", place(),
+                                "illum 4 or 9, glass, is not supported and left out");
         } else if (model && (*model < 0 || *model > 2)) {
             material_.left_out.push_back(
                 {*model == 3.0f ? "reflection" : "illum", place(),
@@ -258,7 +267,7 @@ void MtlReader::other_statement(const std::string& key, std::string_view keyword
     if (!is_neutral(key, words)) {
         const std::string kind =
             fmt::format("{} is not supported and left out", in_quotes(keyword));
-        material_.left_out.push_back({key, place(), kind});
+        material_.leave_out(key, place(), kind);
     }
 }
 
@@ -315,10 +324,7 @@ void MtlReader::take_maps(const Statements& stated, SourceMaterial& material) co
 }
 
 void MtlReader::note_left_out(const Statements& stated) {
-    const auto has = [&](std::string_view key) {
-        return std::ranges::any_of(stated.left_out,
-                                   [=](const auto& left) { return left.key == key; });
-    };
+    const auto has = [&](const char* key) { return stated.left_out_keys.contains(key); };
     const bool opaque = stated.d.value_or(1.0f) >= 1 && stated.tr.value_or(0.0f) <= 0 &&
                         !stated.map_d && !has("tf");
     const bool metal = stated.pm.value_or(0.0f) > 0 || stated.map_pm || stated.rma || stated.orm;
@@ -419,11 +425,11 @@ std::vector<MtlMaterial> MtlReader::read(const std::function<bool(std::string_vi
 
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& path,
                                   const std::function<bool(std::string_view)>& wanted,
-                                  const Warn& warn) {
+                                  FileFinder& finder, const Warn& warn) {
     const std::vector<std::byte> bytes = common::read_file(path);
     const std::string_view text =
         without_padding(without_bom({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
-    return MtlReader(path, text, warn).read(wanted);
+    return MtlReader(path, text, finder, warn).read(wanted);
 }
 
 }  // namespace bake

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cw2-bake/base/diagnostics.h"
+#include "cw2-bake/base/file_finder.h"
 #include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/obj/texture_statement.h"
 
@@ -39,6 +40,6 @@ struct MtlMaterial {
 /// - Texture options -s, -o, -clamp, -imfchan and -bm are honoured.
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& path,
                                   const std::function<bool(std::string_view)>& wanted,
-                                  const Warn& warn);
+                                  FileFinder& finder, const Warn& warn);
 
 }  // namespace bake

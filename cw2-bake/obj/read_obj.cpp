@@ -10,7 +10,9 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <system_error>
 #include <unordered_map>
+#include <utility>
 
 #include "common/file_kind.h"
 #include "common/io.h"
@@ -115,14 +117,14 @@ class Libraries {
     /// Adds the files that it reads to `files`.
     Libraries(const std::filesystem::path& obj, std::string_view text, const Warn& warn,
               std::vector<std::filesystem::path>& files)
-        : obj_(obj), text_(text), warn_(warn), files_(files) {}
+        : obj_(obj), lines_(text), warn_(warn), files_(files) {}
 
     /// `offsets` are those of ObjContents::material_offsets.
     void read(const std::vector<ObjStatement>& statements,
               const std::vector<std::optional<std::size_t>>& offsets,
               std::vector<MtlMaterial>& materials);
     void warn_of_unknown(const std::vector<MtlMaterial>& materials,
-                         const std::vector<std::optional<std::size_t>>& offsets) const;
+                         const std::vector<std::optional<std::size_t>>& offsets);
 
  private:
     std::vector<std::string> names(const ObjStatement& statement);
@@ -130,12 +132,12 @@ class Libraries {
     void find_beside();
     void read_library(const std::filesystem::path& path, const std::string& place,
                       std::vector<MtlMaterial>& materials);
-    std::string place(std::size_t offset) const {
-        return fmt::format("{}:{}", obj_.string(), line_number(text_, offset));
+    std::string place(std::size_t offset) {
+        return fmt::format("{}:{}", obj_.string(), lines_.at(offset));
     }
 
     const std::filesystem::path& obj_;
-    std::string_view text_;
+    LineCounter lines_;
     const Warn& warn_;
     std::vector<std::filesystem::path>& files_;
     FileFinder finder_;
@@ -146,6 +148,7 @@ class Libraries {
     };
     std::vector<Library> libraries_;  // each name once
     std::set<std::string> names_;
+    std::set<std::filesystem::path> found_;
     std::unordered_map<std::string_view, std::size_t> unknown_;  // by name, index of material
     bool some_missing_ = false;
 };
@@ -200,8 +203,12 @@ std::vector<std::string> Libraries::names(const ObjStatement& statement) {
 void Libraries::find(const ObjStatement& statement) {
     for (const std::string& name : names(statement)) {
         if (!names_.insert(name).second) continue;
-        libraries_.push_back(
-            {name, finder_.find(obj_.parent_path(), readings_of(name)), place(statement.offset)});
+        FoundFile found = finder_.find(obj_.parent_path(), readings_of(name));
+        // By another name it is no other file, and would only be read once more.
+        std::error_code error;
+        const auto file = std::filesystem::canonical(found.file, error);
+        if (found.exists && !error && !found_.insert(file).second) continue;
+        libraries_.push_back({name, std::move(found), place(statement.offset)});
     }
 }
 
@@ -221,7 +228,7 @@ void Libraries::read_library(const std::filesystem::path& path, const std::strin
     const auto wanted = [&](std::string_view material) { return unknown_.contains(material); };
     files_.push_back(path);
     try {
-        for (MtlMaterial& material : read_mtl(path, wanted, warn_)) {
+        for (MtlMaterial& material : read_mtl(path, wanted, finder_, warn_)) {
             const auto entry = unknown_.find(material.source.name);
             MtlMaterial& named = materials[entry->second];
             unknown_.erase(entry);
@@ -259,7 +266,7 @@ void Libraries::read(const std::vector<ObjStatement>& statements,
 /// name, or with "(null)", as Blender's first exporter says that a face has none, asks for nothing
 /// but what such a `newmtl` holds, if there is one.
 void Libraries::warn_of_unknown(const std::vector<MtlMaterial>& materials,
-                                const std::vector<std::optional<std::size_t>>& offsets) const {
+                                const std::vector<std::optional<std::size_t>>& offsets) {
     if (some_missing_) return;
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const std::string& material = materials[i].source.name;
@@ -289,9 +296,9 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
     }
     SourceScene& scene = contents.scene;
     if (scene.corners.empty()) throw BakeError(name + ": has no faces");
-    for (const ObjError& warning : contents.warnings) {
-        warn(fmt::format("{}:{}: {}", name, line_number(text, warning.offset), warning.what));
-    }
+    LineCounter lines(text);
+    for (const ObjError& warning : contents.warnings)
+        warn(fmt::format("{}:{}: {}", name, lines.at(warning.offset), warning.what));
     triangulate_polygons(contents.polygons, scene);
     if (contents.lacks_normals) prepare_missing_normals(contents.smoothing_uses, scene);
 

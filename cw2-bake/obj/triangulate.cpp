@@ -1,7 +1,6 @@
 #include "cw2-bake/obj/triangulate.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 
@@ -71,27 +70,42 @@ void Triangulator::quad(std::span<const glm::vec3> polygon) {
     }
 }
 
-/// The node `node` over blockers_[begin .. end - 1]; its halves are the nodes 2 node and 2 node
-/// + 1.
-void Triangulator::build_tree(std::size_t node, std::size_t begin, std::size_t end) {
-    if (tree_.size() <= node) tree_.resize(2 * node + 2);
-    Node built{.low = points_[blockers_[begin]], .count = static_cast<std::uint32_t>(end - begin)};
-    built.high = built.low;
+/// A box around blockers_[begin .. end - 1].
+Triangulator::Node Triangulator::node_around(std::size_t begin, std::size_t end) const {
+    Node node{.low = points_[blockers_[begin]], .count = static_cast<std::uint32_t>(end - begin)};
+    node.high = node.low;
     for (std::size_t i = begin; i < end; ++i) {
         const glm::dvec2& p = points_[blockers_[i]];
-        built.low = {std::min(built.low.x, p.x), std::min(built.low.y, p.y)};
-        built.high = {std::max(built.high.x, p.x), std::max(built.high.y, p.y)};
+        node.low = {std::min(node.low.x, p.x), std::min(node.low.y, p.y)};
+        node.high = {std::max(node.high.x, p.x), std::max(node.high.y, p.y)};
     }
-    tree_[node] = built;
+    return node;
+}
+
+/// The node `node` over blockers_[begin .. end - 1]; its halves are the nodes 2 node and 2 node
+/// + 1. They are cut apart along its longer axis, but for corners that the other one leaves in much
+/// smaller boxes: of two long rows, one beside the other, each half has one, and an ear that
+/// reaches across meets few boxes.
+void Triangulator::build_tree(std::size_t node, std::size_t begin, std::size_t end) {
+    if (tree_.size() <= node) tree_.resize(2 * node + 2);
+    tree_[node] = node_around(begin, end);
     if (end - begin <= kLeaf) return;
-    const int axis = built.high.x - built.low.x < built.high.y - built.low.y ? 1 : 0;
     const std::size_t middle = (begin + end) / 2;
     const auto at = [&](std::size_t i) {
         return blockers_.begin() + static_cast<std::ptrdiff_t>(i);
     };
-    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-        return points_[a][axis] < points_[b][axis];
-    });
+    const auto halve = [&](int axis) {
+        std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+            return points_[a][axis] < points_[b][axis];
+        });
+        const auto area = [](const Node& box) {
+            return (box.high.x - box.low.x) * (box.high.y - box.low.y);
+        };
+        return area(node_around(begin, middle)) + area(node_around(middle, end));
+    };
+    const glm::dvec2 size = tree_[node].high - tree_[node].low;
+    const int longer = size.x < size.y ? 1 : 0;
+    if (halve(longer) <= 4 * halve(1 - longer)) halve(longer);
     build_tree(2 * node, begin, middle);
     build_tree(2 * node + 1, middle, end);
 }
@@ -100,6 +114,7 @@ void Triangulator::build_tree(std::size_t node, std::size_t begin, std::size_t e
 void Triangulator::stop_blocking(std::uint32_t v) {
     if (!may_block_[v]) return;
     may_block_[v] = 0;
+    while (first_waiting_[v] != kNone) wait_no_longer(first_waiting_[v]);
     std::size_t begin = 0, end = blockers_.size();
     for (std::size_t node = 1;;) {
         --tree_[node].count;
@@ -123,12 +138,19 @@ bool Triangulator::blocks(std::uint32_t q, const Triangle& ear, Rule rule) const
     return points_[q] != points_[a] && points_[q] != points_[c];
 }
 
-/// A corner in `node` that blocks the ear, or kNone. Sums and products round monotonically, so that
+/// A corner in `node` that blocks the ear, or kNone. The edges do not tell what lies beyond the tip
+/// of a thin ear; its own box does. Sums and products round monotonically, so that
 /// a corner of a box that lies behind an edge shows the same of all that is in the box.
 std::uint32_t Triangulator::blocker(const Triangle& ear, Rule rule, std::size_t node,
-                                    std::size_t begin, std::size_t end) const {
+                                    std::size_t begin, std::size_t end) {
+    ++steps_;
+    const glm::dvec2 &a = points_[ear[0]], &b = points_[ear[1]], &c = points_[ear[2]];
     const Node& box = tree_[node];
     if (box.count == 0) return kNone;
+    const auto [low_x, high_x] = std::minmax({a.x, b.x, c.x});
+    const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
+    if (box.high.x < low_x || box.low.x > high_x || box.high.y < low_y || box.low.y > high_y)
+        return kNone;
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec2 from = points_[ear[i]];
         const glm::dvec2 edge = points_[ear[(i + 1) % 3]] - from;
@@ -138,8 +160,15 @@ std::uint32_t Triangulator::blocker(const Triangle& ear, Rule rule, std::size_t 
     }
     if (end - begin > kLeaf) {
         const std::size_t middle = (begin + end) / 2;
-        const std::uint32_t found = blocker(ear, rule, 2 * node, begin, middle);
-        return found != kNone ? found : blocker(ear, rule, 2 * node + 1, middle, end);
+        // A half that is drawn: of corners that are cut off one after the other, any one blocks for
+        // longer, on the average, than the first of them.
+        const bool left_first = ((ear[1] ^ node) * 0x9E37'79B9'7F4A'7C15) >> 63 == 0;
+        for (const bool left : {left_first, !left_first}) {
+            const std::uint32_t found = left ? blocker(ear, rule, 2 * node, begin, middle)
+                                             : blocker(ear, rule, 2 * node + 1, middle, end);
+            if (found != kNone) return found;
+        }
+        return kNone;
     }
     for (std::size_t i = begin; i < end; ++i) {
         const std::uint32_t q = blockers_[i];
@@ -148,50 +177,66 @@ std::uint32_t Triangulator::blocker(const Triangle& ear, Rule rule, std::size_t 
     return kNone;
 }
 
+/// Corner v is looked at again only when `blocker` blocks no longer, or v's neighbours change: else
+/// a comb's teeth would all be looked at for each that is cut off.
+void Triangulator::wait_for(std::uint32_t v, std::uint32_t blocker) {
+    wait_no_longer(v);
+    candidates_.erase(v);
+    blocked_by_[v] = blocker;
+    previous_waiting_[v] = kNone;
+    next_waiting_[v] = first_waiting_[blocker];
+    if (next_waiting_[v] != kNone) previous_waiting_[next_waiting_[v]] = v;
+    first_waiting_[blocker] = v;
+}
+
+void Triangulator::wait_no_longer(std::uint32_t v) {
+    const std::uint32_t blocker = blocked_by_[v];
+    if (blocker == kNone) return;
+    const std::uint32_t before = previous_waiting_[v], after = next_waiting_[v];
+    (before == kNone ? first_waiting_[blocker] : next_waiting_[before]) = after;
+    if (after != kNone) previous_waiting_[after] = before;
+    blocked_by_[v] = kNone;
+    candidates_.insert(v);
+}
+
 bool Triangulator::is_ear(std::uint32_t v, Rule rule) {
     if (rule == Rule::convex || blockers_.empty()) return true;
-    const Triangle ear{previous_[v], v, next_[v]};
-    std::uint32_t& known = blocked_by_[v];
-    if (known != kNone && may_block_[known] && blocks(known, ear, rule)) return false;
-    known = blocker(ear, rule, 1, 0, blockers_.size());
-    return known == kNone;
+    const std::uint32_t found = blocker({previous_[v], v, next_[v]}, rule, 1, 0, blockers_.size());
+    if (found != kNone) wait_for(v, found);
+    return found == kNone;
 }
 
-void Triangulator::set_convex(std::uint32_t v, bool convex) {
-    const std::uint64_t bit = std::uint64_t{1} << v % 64;
-    convex_[v / 64] = convex ? convex_[v / 64] | bit : convex_[v / 64] & ~bit;
-}
-
-/// The first of corners begin .. end - 1 that is convex and satisfies the rule, else `end`.
-std::uint32_t Triangulator::first_ear(std::uint32_t begin, std::uint32_t end, Rule rule) {
-    for (std::uint32_t v = begin; v < end; ++v) {
-        const std::uint64_t word = convex_[v / 64] >> v % 64;
-        if (word == 0) {
-            v |= 63;
-            continue;
-        }
-        v += static_cast<std::uint32_t>(std::countr_zero(word));
-        if (v < end && is_ear(v, rule)) return v;
+/// Takes notice of the shape of a corner whose neighbours are new.
+void Triangulator::sort_in(std::uint32_t v) {
+    sort_out(v);
+    const double area = turn(previous_[v], v, next_[v]);
+    if (area > 0) {
+        convex_.insert(v);
+        candidates_.insert(v);
+    } else if (area == 0) {
+        flat_.insert(v);
     }
-    return end;
+}
+
+void Triangulator::sort_out(std::uint32_t v) {
+    wait_no_longer(v);
+    convex_.erase(v);
+    candidates_.erase(v);
+    flat_.erase(v);
 }
 
 /// The corner to cut off by this rule that comes first from v on, once around; kNone if none does.
 std::uint32_t Triangulator::find(std::uint32_t v, Rule rule) {
     if (rule == Rule::any) return v;
-    if (rule == Rule::without_area) {
-        const std::uint32_t start = v;
-        do {
-            if (turn(previous_[v], v, next_[v]) == 0) return v;
-            v = next_[v];
-        } while (v != start);
+    const CornerSet& set = rule == Rule::without_area ? flat_ : candidates_;
+    const auto first_in = [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = set.next(begin); i < end; i = set.next(i + 1)) {
+            if (rule == Rule::without_area || is_ear(i, rule)) return i;
+        }
         return kNone;
-    }
-    const auto count = static_cast<std::uint32_t>(points_.size());
-    const std::uint32_t after = first_ear(v, count, rule);
-    if (after < count) return after;
-    const std::uint32_t before = first_ear(0, v, rule);
-    return before < v ? before : kNone;
+    };
+    const std::uint32_t after = first_in(v, static_cast<std::uint32_t>(points_.size()));
+    return after != kNone ? after : first_in(0, v);
 }
 
 void Triangulator::clip_ears() {
@@ -199,31 +244,37 @@ void Triangulator::clip_ears() {
     previous_.resize(count);
     next_.resize(count);
     may_block_.resize(count);
-    convex_.assign(count / 64 + 1, 0);
+    for (CornerSet* set : {&convex_, &flat_, &candidates_}) set->clear(count);
+    for (std::vector<std::uint32_t>* list :
+         {&blocked_by_, &first_waiting_, &next_waiting_, &previous_waiting_})
+        list->assign(count, kNone);
     for (std::uint32_t i = 0; i < count; ++i) {
         previous_[i] = (i + count - 1) % count;
         next_[i] = (i + 1) % count;
     }
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const bool convex = turn(previous_[i], i, next_[i]) > 0;
-        may_block_[i] = !convex;
-        set_convex(i, convex);
-    }
     blockers_.clear();
     for (std::uint32_t i = 0; i < count; ++i) {
+        sort_in(i);
+        may_block_[i] = !convex_.contains(i);
         if (may_block_[i]) blockers_.push_back(i);
     }
     if (!blockers_.empty()) build_tree(1, 0, blockers_.size());
-    blocked_by_.assign(count, kNone);
     place_.resize(count);
     for (std::uint32_t i = 0; i < blockers_.size(); ++i) place_[blockers_[i]] = i;
 
     std::uint32_t left = count, v = 0;
     Rule rule = Rule::ear;
+    steps_ = 0;
     while (left > 3) {
+        if (steps_ > kMostSteps * count && rule != Rule::any && rule != Rule::convex) {
+            rule = Rule::convex;
+            candidates_ = convex_;
+        }
         const std::uint32_t found = find(v, rule);
         if (found == kNone) {
             rule = static_cast<Rule>(static_cast<int>(rule) + 1);
+            // What blocked by the strict rule need not by a later one.
+            if (rule == Rule::clear_inside || rule == Rule::convex) candidates_ = convex_;
             continue;
         }
         const std::uint32_t a = previous_[found], c = next_[found];
@@ -231,11 +282,10 @@ void Triangulator::clip_ears() {
         next_[a] = c;
         previous_[c] = a;
         stop_blocking(found);
-        set_convex(found, false);
+        sort_out(found);
         for (const std::uint32_t end : {a, c}) {
-            const bool convex = turn(previous_[end], end, next_[end]) > 0;
-            if (convex) stop_blocking(end);
-            set_convex(end, convex);
+            sort_in(end);
+            if (convex_.contains(end)) stop_blocking(end);
         }
         --left;
         // An outline that needed a later rule is no polygon: the strict one gains nothing.

@@ -106,6 +106,7 @@ EarlierBake::EarlierBake(const std::filesystem::path& path) {
     } catch (const std::runtime_error&) {
         return;  // nothing there, or another version, or damaged
     }
+    checked_ = std::vector<Checked>(document_.textures.size());
     for (const mesh_format::SourceRecord& source : document_.sources) {
         sources_.emplace(SourceKey{source.key[0], source.key[1]}, &source);
     }
@@ -114,7 +115,10 @@ EarlierBake::EarlierBake(const std::filesystem::path& path) {
 std::optional<Texture> EarlierBake::texture(std::uint32_t index, const std::string& name) const {
     const mesh_format::TextureRecord& record = document_.textures[index];
     const std::span<const std::byte> payload = document_.payload(record);
-    if (mesh_format::checksum(payload) != record.checksum) return std::nullopt;
+    std::call_once(checked_[index].once, [&] {
+        checked_[index].is_whole = mesh_format::checksum(payload) == record.checksum;
+    });
+    if (!checked_[index].is_whole) return std::nullopt;
     return Texture{.name = name,
                    .format = record.format,
                    .clamp = (record.flags & mesh_format::kClampToEdge) != 0,

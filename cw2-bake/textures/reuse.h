@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,9 +41,16 @@ class EarlierBake {
  private:
     std::optional<Texture> texture(std::uint32_t index, const std::string& name) const;
 
+    /// Many sources may have become one texture: its checksum is compared once.
+    struct Checked {
+        std::once_flag once;
+        bool is_whole = false;
+    };
+
     std::shared_ptr<const common::MappedFile> file_;
     mesh_format::Document document_;
     std::map<SourceKey, const mesh_format::SourceRecord*> sources_;
+    mutable std::vector<Checked> checked_;  ///< by texture
 };
 
 }  // namespace bake

@@ -23,7 +23,7 @@ class ReadMtl : public testing::Test {
         warnings_.clear();
         const std::string prefix = folder_.path().string() + "/";
         return bake::read_mtl(
-            folder_.write("m.mtl", text), [](std::string_view) { return true; },
+            folder_.write("m.mtl", text), [](std::string_view) { return true; }, finder_,
             [&](const std::string& warning) {
                 EXPECT_TRUE(warning.starts_with(prefix)) << warning;
                 warnings_.push_back(warning.substr(prefix.size()));
@@ -40,6 +40,7 @@ class ReadMtl : public testing::Test {
         return map.file.lexically_relative(folder_.path()).generic_string();
     }
     TempFolder folder_;
+    bake::FileFinder finder_;
     std::vector<std::string> warnings_;
 };
 
@@ -277,7 +278,7 @@ TEST_F(ReadMtl, ReadsTheFirstOfANameAndOnlyWhatIsWanted) {
     const auto path = folder_.write(
         "m.mtl", "Kd x\nfoo\nnewmtl a\nKd 1 0 0\nnewmtl b\nKd x\nd 0.5\nnewmtl a\nKd 0 1 0\n");
     const auto materials = bake::read_mtl(
-        path, [](std::string_view name) { return name == "a"; },
+        path, [](std::string_view name) { return name == "a"; }, finder_,
         [](const std::string& warning) { ADD_FAILURE() << warning; });
     ASSERT_EQ(materials.size(), 1u);
     EXPECT_EQ(materials[0].source.base_color, glm::vec3(1, 0, 0));
@@ -326,7 +327,7 @@ TEST_F(ReadMtl, ANumberTooSmallForAFloatIsZero) {
 
 TEST_F(ReadMtl, NeedsTheFile) {
     EXPECT_THROW(bake::read_mtl(
-                     folder_.path() / "no.mtl", [](std::string_view) { return true; },
+                     folder_.path() / "no.mtl", [](std::string_view) { return true; }, finder_,
                      [](const std::string&) {}),
                  common::FileError);
 }

@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# Fuzzes one target (obj, gltf, mesh, images) that the preset sanitize built: replays its seeds, then
+# makes more of them for some seconds. Keeps what is new in CORPUS, if one is given, and takes it up
+# the next time. What breaks the target stays in BUILD/fuzz; as a seed it stays mended.
+# Usage: run.sh BUILD TARGET SECONDS [CORPUS]
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+build=$1 target=$2 seconds=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+corpus=${4:-$work/corpus}
+mkdir -p "$build/fuzz" "$corpus" "$work/scratch" "$work/seeds"
+
+if [[ $target == mesh ]]; then
+    # Baked anew: they would be of an old version soon.
+    for seed in "$here"/seeds/obj/forms "$here"/seeds/gltf/everything.glb; do
+        for form in quat48 quat32 half3 "f32 --positions f32" "quat48 --compress"; do
+            name=$(basename "$seed")_${form// /_}
+            tr -d '\0' <"$seed" >"$work/scratch/forms.obj" # an MTL's lines are none of an OBJ
+            cp "$seed" "$work/scratch/everything.glb"
+            input=$work/scratch/$(basename "$seed" | sed 's/^forms$/forms.obj/')
+            # shellcheck disable=SC2086
+            "$build/bin/cw2-bake" "$input" --quiet --tangent-frame $form -o "$work/seeds/$name.cw2mesh"
+        done
+    done
+else
+    cp "$here/seeds/$target"/* "$work/seeds"
+fi
+dictionary=()
+[[ -f $here/$target.dict ]] && dictionary=(-dict="$here/$target.dict")
+TMPDIR=$work/scratch "$build/bin/fuzz_$target" "${dictionary[@]}" -max_total_time="$seconds" \
+    -timeout=20 -rss_limit_mb=3000 -malloc_limit_mb=1500 -max_len=20000 -print_final_stats=1 \
+    -artifact_prefix="$build/fuzz/$target-" "$corpus" "$work/seeds" >"$work/log" 2>&1 || {
+    tail -n 60 "$work/log"
+    exit 1
+}
+grep -E 'number_of_executed_units|DONE' "$work/log"
