@@ -3,6 +3,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <climits>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -20,15 +21,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Where a file is, or would be; none where there is no such folder.
+std::optional<fs::path> place_of(const fs::path& path) {
+    if (path.native().size() >= PATH_MAX) return std::nullopt;
+    const fs::path folder = path.parent_path();
+    std::error_code error;
+    const fs::path canonical = fs::canonical(folder.empty() ? "." : folder, error);
+    return error ? std::nullopt : std::optional(canonical / path.filename());
+}
+
 bool is_same_file(const fs::path& a, const fs::path& b) {
     std::error_code error;
     if (fs::equivalent(a, b, error)) return true;
-    // Of a relative path none of which exists, weakly_canonical() would not make an absolute one.
-    const auto canonical = [&](const fs::path& path) {
-        return fs::weakly_canonical(fs::absolute(path), error);
-    };
-    const fs::path of_a = canonical(a);
-    return !error && of_a == canonical(b) && !error;
+    const std::optional<fs::path> place = place_of(a);
+    return place && place == place_of(b);
 }
 
 /// What in `folder` the pattern `component` of a path matches.

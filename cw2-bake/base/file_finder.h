@@ -45,7 +45,7 @@ class FileFinder {
 
     std::map<std::filesystem::path, Listing> listings_;
     std::size_t entries_left_ = kMostEntries;
-    std::size_t comparisons_left_ = 50'000'000;  ///< of letters
+    std::size_t comparisons_left_ = 8'000'000;  ///< of letters
 };
 
 /// How an OBJ or MTL may mean a name: backslashes separate folders, or belong to it.

@@ -151,6 +151,8 @@ std::uint32_t Triangulator::blocker(const Triangle& ear, Rule rule, std::size_t 
     const auto [low_y, high_y] = std::minmax({a.y, b.y, c.y});
     if (box.high.x < low_x || box.low.x > high_x || box.high.y < low_y || box.low.y > high_y)
         return kNone;
+    const bool is_point = box.low == box.high;
+    if (is_point && (box.low == a || box.low == c)) return kNone;  // see blocks()
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec2 from = points_[ear[i]];
         const glm::dvec2 edge = points_[ear[(i + 1) % 3]] - from;
