@@ -1,5 +1,6 @@
 #include "common/io.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/mman.h>
@@ -11,6 +12,7 @@
 #include <cassert>
 #include <cerrno>
 #include <cstdio>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <random>
@@ -90,6 +92,20 @@ Descriptor open_regular(const std::filesystem::path& path) {
     return file;
 }
 
+/// Gives the characters of what one_line() makes of `text`.
+template <typename Put>
+void each_shown(std::string_view text, Put&& put) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte == 0x7F) {
+            for (const char shown : {'\\', 'x', kDigits[byte / 16], kDigits[byte % 16]}) put(shown);
+        } else {
+            put(c);
+        }
+    }
+}
+
 // Temporary files are named as their target, this, and some of these.
 constexpr std::string_view kMark = ".cw2-";
 constexpr std::size_t kSuffixLength = 6;
@@ -109,16 +125,19 @@ void remove_leftovers(const std::filesystem::path& folder) {
     static std::set<std::filesystem::path> done;
     const std::scoped_lock lock(mutex);
     if (!done.insert(folder).second) return;
-    std::error_code error;
-    std::filesystem::directory_iterator at(folder.empty() ? "." : folder, error);
-    for (; !error && at != std::filesystem::directory_iterator(); at.increment(error)) {
-        if (!is_temporary_name(at->path().filename().native())) continue;
+    // Iterators of std::filesystem end the program where there is no memory.
+    const std::unique_ptr<DIR, int (*)(DIR*)> entries(
+        ::opendir(folder.empty() ? "." : folder.c_str()), ::closedir);
+    if (!entries) return;
+    while (const dirent* const entry = ::readdir(entries.get())) {
+        if (!is_temporary_name(entry->d_name)) continue;
+        const int at = ::dirfd(entries.get());
         const Descriptor file(
-            ::open(at->path().c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
+            ::openat(at, entry->d_name, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
         struct stat status {};
         if (file.get() >= 0 && ::fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode) &&
             status.st_uid == ::geteuid() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) {
-            ::unlink(at->path().c_str());
+            ::unlinkat(at, entry->d_name, 0);
         }
     }
 }
@@ -126,19 +145,24 @@ void remove_leftovers(const std::filesystem::path& folder) {
 }  // namespace
 
 std::string one_line(std::string_view text) {
-    constexpr std::string_view kDigits = "0123456789abcdef";
     std::string line;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x20 || byte == 0x7F) {
-            line += "\\x";
-            line += kDigits[byte / 16];
-            line += kDigits[byte % 16];
-        } else {
-            line += c;
-        }
-    }
+    each_shown(text, [&](char c) { line += c; });
     return line;
+}
+
+void tell(std::string_view program, std::string_view message) noexcept {
+    std::array<char, 512> buffer;
+    std::size_t filled = 0;
+    const auto put = [&](char c) {
+        buffer[filled++] = c;
+        if (filled < buffer.size() && c != '\n') return;
+        [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, buffer.data(), filled);
+        filled = 0;
+    };
+    for (const char c : program) put(c);
+    for (const char c : {':', ' '}) put(c);
+    each_shown(message, put);
+    put('\n');
 }
 
 std::vector<std::byte> read_file(const std::filesystem::path& path, std::size_t most) {

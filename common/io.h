@@ -22,6 +22,10 @@ class FileError : public std::runtime_error {
 /// is one line.
 std::string one_line(std::string_view text);
 
+/// Writes the one line "PROGRAM: MESSAGE" to standard error, as one_line() makes it; takes no
+/// memory, for there may be none.
+void tell(std::string_view program, std::string_view message) noexcept;
+
 /// The first `most` bytes of a file, in memory, where they stay what they are whatever happens to
 /// it. Throws FileError as MappedFile does.
 std::vector<std::byte> read_file(const std::filesystem::path& path,

@@ -99,11 +99,9 @@ void on_terminate() {
     try {
         std::rethrow_exception(std::current_exception());
     } catch (const std::exception& error) {
-        const std::string message = program_name + ": " + one_line(error.what()) + '\n';
         acquire();
         remove_all();
-        [[maybe_unused]] const ssize_t ignored =
-            ::write(STDERR_FILENO, message.data(), message.size());
+        tell(program_name, error.what());
         ::_exit(1);
     } catch (...) {
         std::abort();
@@ -136,9 +134,14 @@ void handle_signals(const char* program) {
 
 int create_temporary(const std::string& path, mode_t mode) {
     const Lock lock;
+    temporaries.emplace_back().reserve(path.size());  // nothing may fail once the file is there
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     const int cause = errno;
-    if (descriptor >= 0) temporaries.push_back(path);
+    if (descriptor >= 0) {
+        temporaries.back() = path;
+    } else {
+        temporaries.pop_back();
+    }
     errno = cause;
     return descriptor;
 }

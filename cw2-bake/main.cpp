@@ -1,10 +1,10 @@
 // cw2-bake: turns an OBJ into a .cw2mesh file, and tells what is in one.
 #include <malloc.h>
 
-#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 
 #include "common/io.h"
 #include "common/signals.h"
@@ -16,8 +16,8 @@
 
 namespace {
 
-void tell(const std::string& message) {
-    std::fprintf(stderr, "cw2-bake: %s\n", common::one_line(message).c_str());
+void tell(std::string_view message) {
+    common::tell("cw2-bake", message);
 }
 
 void inspect(const bake::Settings& settings) {
@@ -66,6 +66,9 @@ int main(int argc, char** argv) {
     } catch (const bake::UsageError& error) {
         tell(error.what());
         return 2;
+    } catch (const std::bad_alloc&) {
+        tell("there is not enough memory");
+        return 1;
     } catch (const std::exception& error) {
         tell(error.what());
         return 1;

@@ -18,7 +18,7 @@
 namespace {
 
 void tell(const char* message) {
-    std::fprintf(stderr, "cw2: %s\n", common::one_line(message).c_str());
+    common::tell("cw2", message);
 }
 
 int run(const cw2::Options& options) {

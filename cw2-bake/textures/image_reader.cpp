@@ -82,7 +82,7 @@ extern "C" __attribute__((visibility("default"))) bool cw2_bake_image_reader(con
         image = read(path);
         return true;
     } catch (const std::bad_alloc&) {
-        error = "needs more memory than there is";
+        error.clear();
     } catch (const std::exception& exception) {
         error = exception.what();
     } catch (...) {

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <csetjmp>
+#include <cstdlib>
 #include <cstring>
+#include <new>
 #include <string>
 
 // After <cstdio>, which it needs.
@@ -28,9 +30,11 @@ struct PngReader {
     std::span<const std::byte> rest;
     std::vector<png_bytep> rows;
     std::string error;
+    bool lacks_memory = false;
 
     explicit PngReader(std::span<const std::byte> contents) : rest(contents) {
-        png = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, fail, ignore);
+        png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, this, fail, ignore, this, allocate,
+                                       free);
         if (png) info = png_create_info_struct(png);
         if (!info) {
             png_destroy_read_struct(&png, nullptr, nullptr);
@@ -46,6 +50,13 @@ struct PngReader {
         png_longjmp(png, 1);
     }
     static void ignore(png_structp, png_const_charp) {}
+    /// To the library a lack of memory is an error like any other.
+    static png_voidp allocate(png_structp png, png_alloc_size_t size) {
+        void* const place = std::malloc(size);
+        if (!place) static_cast<PngReader*>(png_get_mem_ptr(png))->lacks_memory = true;
+        return place;
+    }
+    static void free(png_structp, png_voidp place) { std::free(place); }
     static void read(png_structp png, png_bytep out, std::size_t size) {
         auto& rest = static_cast<PngReader*>(png_get_io_ptr(png))->rest;
         if (size > rest.size()) png_error(png, "ends early");
@@ -174,7 +185,10 @@ std::optional<Image> read_common_image(std::span<const std::byte> contents) {
     Image image;
     if (starts_with(contents, "\x89PNG\r\n\x1a\n")) {
         PngReader reader(contents);
-        if (!read_png(reader, image)) throw ImageError("is damaged: " + reader.error);
+        if (!read_png(reader, image)) {
+            if (reader.lacks_memory) throw std::bad_alloc();
+            throw ImageError("is damaged: " + reader.error);
+        }
         return image;
     }
     if (starts_with(contents, "\xff\xd8\xff")) {
@@ -185,6 +199,7 @@ std::optional<Image> read_common_image(std::span<const std::byte> contents) {
             case Outcome::other_colors:
                 return std::nullopt;
             case Outcome::damaged:
+                if (reader.errors.msg_code == JERR_OUT_OF_MEMORY) throw std::bad_alloc();
                 throw ImageError(std::string("is damaged: ") + reader.error.data());
         }
     }

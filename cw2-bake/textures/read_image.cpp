@@ -73,17 +73,10 @@ Image read_regular_file(const std::filesystem::path& path) {
     Image image;
     std::string error;
     if (!reader(path.c_str(), image, error)) {
+        if (error.empty()) throw std::bad_alloc();
         throw ImageError(one_line(std::move(error)));
     }
     return image;
-}
-
-std::optional<Image> read_common(std::span<const std::byte> contents) {
-    try {
-        return read_common_image(contents);
-    } catch (const std::bad_alloc&) {
-        throw ImageError("needs more memory than there is");
-    }
 }
 
 /// A file in memory that lives as long as this.
@@ -118,7 +111,7 @@ Image read_image(const std::filesystem::path& path) {
     check_regular_file(path);
     try {
         const common::MappedFile file(path);
-        if (auto image = read_common(file.bytes())) {
+        if (auto image = read_common_image(file.bytes())) {
             file.require_unchanged();
             return std::move(*image);
         }
@@ -133,7 +126,7 @@ Image read_image(const std::filesystem::path& path) {
 Image read_image(std::span<const std::byte> contents) {
     if (contents.empty()) throw ImageError("is empty");
     if (common::is_lfs_pointer(contents)) throw ImageError(std::string(common::kIsLfsPointer));
-    if (auto image = read_common(contents)) return std::move(*image);
+    if (auto image = read_common_image(contents)) return std::move(*image);
     // Not every decoder of OpenImageIO reads from memory; all read files.
     return read_regular_file(MemoryFile(contents).path());
 }

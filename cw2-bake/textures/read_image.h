@@ -19,7 +19,8 @@ Image read_image(const std::filesystem::path& path);
 /// The same for the contents of an image file.
 Image read_image(std::span<const std::byte> contents);
 
-/// What the module image_reader exports: sets `image` and returns true, or sets `error`.
+/// What the module image_reader exports: sets `image` and returns true, or sets `error`, which is
+/// empty where there was not enough memory.
 using ImageReader = bool(const char* path, Image& image, std::string& error);
 inline constexpr const char* kImageReaderModule = "../lib/cw2/image_reader.so";
 inline constexpr const char* kImageReaderSymbol = "cw2_bake_image_reader";

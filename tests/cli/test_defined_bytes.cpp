@@ -2,6 +2,7 @@
 // that was divided otherwise, give the same file.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <string>
@@ -11,6 +12,10 @@
 #include "tests/cli/scene_folder.h"
 
 namespace {
+
+/// Members of the statistics.
+constexpr const char* kMeasured[] = {"milliseconds", "total_milliseconds", "peak_memory_bytes",
+                                     "read_megabytes_per_second"};
 
 /// A scene whose vertices have parts of all forms, and counts of vertices that are no multiple
 /// of 4.
@@ -28,40 +33,76 @@ class DefinedBytes : public SceneFolder {
               "usemtl plain\nf 6 7 8\n");
     }
 
+    /// What a bake writes, and says that it did but for the time that it took.
+    struct Written {
+        std::string file, stats;
+        bool operator==(const Written&) const = default;
+    };
+
     /// Bakes where glibc fills what malloc hands out with the complement of `perturb`.
-    std::string baked(const std::string& perturb, std::vector<std::string> arguments) {
+    Written baked(const std::string& perturb, std::vector<std::string> arguments,
+                  const std::string& output = "out.cw2mesh") {
         arguments.insert(arguments.begin(), {BAKE_PROGRAM, "forms.obj"});
-        arguments.insert(arguments.end(), {"--quiet", "-o", "out.cw2mesh"});
-        std::filesystem::remove(here("out.cw2mesh"));
+        arguments.insert(arguments.end(), {"--quiet", "-o", output, "--stats", "stats.json"});
+        for (const std::string& name : {output, std::string("stats.json")})
+            std::filesystem::remove(here(name));
         const Outcome outcome = run(arguments, {{"MALLOC_PERTURB_=" + perturb}, folder_.path()});
         EXPECT_EQ(outcome.status, 0) << outcome.err;
-        return read("out.cw2mesh");
+        auto stats = nlohmann::json::parse(read("stats.json"));
+        for (const char* measured : kMeasured) EXPECT_EQ(stats.erase(measured), 1u) << measured;
+        return {read(output), stats.dump()};
+    }
+
+    static std::vector<std::vector<std::string>> all_forms() {
+        std::vector<std::vector<std::string>> forms;
+        for (const char* frame : {"quat48", "quat32", "half3", "f32"}) {
+            for (const char* positions : {"quantised", "f32"}) {
+                forms.push_back({"--tangent-frame", frame, "--positions", positions});
+                forms.push_back(forms.back());
+                forms.back().emplace_back("--compress");
+            }
+        }
+        return forms;
+    }
+    static std::vector<std::string> with(std::vector<std::string> arguments,
+                                         const std::vector<std::string>& more) {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
     }
 };
 
-TEST_F(DefinedBytes, InEveryForm) {
-    for (const char* frame : {"quat48", "quat32", "half3", "f32"}) {
-        for (const char* positions : {"quantised", "f32"}) {
-            for (const bool compress : {false, true}) {
-                SCOPED_TRACE(std::string(frame) + ' ' + positions +
-                             (compress ? " compressed" : ""));
-                std::vector<std::string> form = {"--tangent-frame", frame, "--positions",
-                                                 positions};
-                if (compress) form.push_back("--compress");
-                std::vector<std::string> on_one = form, on_three = form;
-                on_one.insert(on_one.end(), {"--threads", "1"});
-                on_three.insert(on_three.end(), {"--threads", "3"});
-                const std::string file = baked("85", on_one);
-                ASSERT_FALSE(file.empty());
-                EXPECT_TRUE(file == baked("170", on_one));
-                EXPECT_TRUE(file == baked("170", on_three));
+TEST_F(DefinedBytes, InEveryFormOnAnyNumberOfThreads) {
+    for (const std::vector<std::string>& form : all_forms()) {
+        for (const char* output : {"out.cw2mesh", "out.glb"}) {
+            if (form.back() == "--compress" && output == std::string("out.glb")) continue;
+            const Written first = baked("85", with(form, {"--threads", "1"}), output);
+            ASSERT_FALSE(first.file.empty());
+            for (const char* threads : {"1", "2", "3", "5"}) {
+                SCOPED_TRACE(testing::PrintToString(form) + output + threads);
+                EXPECT_TRUE(first == baked("170", with(form, {"--threads", threads}), output));
             }
         }
     }
 }
 
+/// What has other contents from run to run, valgrind knows to be undefined.
+TEST_F(DefinedBytes, NoUndefinedOneIsUsedOrWritten) {
+    const auto forms = all_forms();
+    for (const auto& form : {forms.front(), forms.back()}) {
+        for (const char* output : {"out.cw2mesh", "out.glb"}) {
+            if (form.back() == "--compress" && output == std::string("out.glb")) continue;
+            const Outcome outcome =
+                run(with({VALGRIND, "-q", "--error-exitcode=9", BAKE_PROGRAM, "forms.obj", "-o",
+                          output, "--stats", "stats.json", "--threads", "2", "--quiet"},
+                         form),
+                    {{}, folder_.path()});
+            EXPECT_EQ(outcome.status, 0) << testing::PrintToString(form) << outcome.err;
+        }
+    }
+}
+
 TEST_F(DefinedBytes, TheSceneHasAllForms) {
-    const std::string file = baked("85", {});
+    const std::string file = baked("85", {}).file;
     const auto scene = mesh_format::parse(std::as_bytes(std::span(file)), "out.cw2mesh");
     std::set<mesh_format::UvForm> uvs;
     std::set<mesh_format::ColorForm> colors;

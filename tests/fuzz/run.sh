@@ -29,7 +29,7 @@ fi
 dictionary=()
 [[ -f $here/$target.dict ]] && dictionary=(-dict="$here/$target.dict")
 TMPDIR=$work/scratch "$build/bin/fuzz_$target" "${dictionary[@]}" -max_total_time="$seconds" \
-    -timeout=20 -rss_limit_mb=3000 -malloc_limit_mb=1500 -max_len=20000 -print_final_stats=1 \
+    -entropic=0 -timeout=100 -rss_limit_mb=3000 -malloc_limit_mb=1500 -max_len=20000 -print_final_stats=1 \
     -artifact_prefix="$build/fuzz/$target-" "$corpus" "$work/seeds" >"$work/log" 2>&1 || {
     tail -n 60 "$work/log"
     exit 1

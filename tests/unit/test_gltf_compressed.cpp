@@ -107,6 +107,32 @@ TEST_F(GltfMeshopt, FiltersAreUndone) {
     EXPECT_NEAR(glm::distance(position(scene, 0), glm::vec3(-1, -1, 0.25f)), 0, 1e-4);
 }
 
+TEST_F(GltfMeshopt, ViewsThatShareTheirBytesAreBounded) {
+    GltfWriter gltf = square_gltf();
+    std::mt19937 random(1);
+    std::vector<float> positions(3 * 3000);
+    for (float& value : positions) value = static_cast<float>(random() % 1000);
+    const auto accessor = static_cast<std::size_t>(gltf.accessor(positions, kFloat, "VEC3"));
+    json& primitives = gltf.root["meshes"][0]["primitives"];
+    primitives[0]["attributes"] = {{"POSITION", accessor}};
+    compress(gltf, static_cast<int>(accessor), encode_vertices(positions, 12), "ATTRIBUTES", 12);
+    gltf.bytes.erase(gltf.bytes.begin() + 200, gltf.bytes.begin() + 36'000);
+    const std::size_t view = gltf.root["accessors"][accessor]["bufferView"];
+    json& extension = gltf.root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"];
+    extension["byteOffset"] = extension["byteOffset"].get<std::size_t>() - 35'800;
+    gltf.root["buffers"][0]["byteLength"] = gltf.bytes.size();
+    EXPECT_EQ(error(gltf), "");
+    for (int i = 0; i < 3; ++i) {
+        json another = gltf.root["accessors"][accessor];
+        another["bufferView"] = gltf.add("bufferViews", json(gltf.root["bufferViews"][view]));
+        json sharing = primitives[0];
+        sharing["attributes"]["POSITION"] = gltf.add("accessors", another);
+        primitives.push_back(sharing);
+    }
+    const std::string message = error(gltf);
+    EXPECT_TRUE(message.ends_with(": its compressed bytes belong to other views, too")) << message;
+}
+
 TEST_F(GltfMeshopt, WhatDoesNotFitIsRefusedWithItsPlace) {
     const auto message = [&](const std::function<void(json&)>& damage) {
         GltfWriter gltf = square_gltf();
@@ -299,6 +325,36 @@ TEST_F(GltfDraco, ClaimsBeyondWhatBytesHoldAreRefused) {
             0,   0,   0,   0,   0x80, 0xF0, 0xFA, 0x02, 0x00, 0xE1, 0xF5, 0x05};
     data.resize(200, 1);
     EXPECT_EQ(error(square(data)), refusal);
+}
+
+/// With metadata before the claims, of an attribute and of the whole, each with a value and a part;
+/// and in the sequential encoding, where entropy codes take no byte for a vertex.
+TEST_F(GltfDraco, ClaimsAreFoundBehindMetadataAndInEitherEncoding) {
+    const std::string refusal =
+        place_ + "its Draco data is damaged: it claims to hold more than its bytes can";
+    std::vector<std::uint8_t> data{'D', 'R', 'A', 'C', 'O', 2, 2, 1, 1, 0, 0x80, 1, 0};
+    for (int i = 0; i < 2; ++i)
+        data.insert(data.end(), {1, 1, 'n', 2, 0xFF, 0xFF, 1, 2, 'p', 'q', 0, 0});
+    data.insert(data.end(), {0, 0x80, 0xE1, 0xEB, 0x17, 0x80, 0xC2, 0xD7, 0x2F});
+    data.resize(200, 1);
+    EXPECT_EQ(error(square(data)), refusal);
+    data = {'D', 'R', 'A', 'C', 'O', 2, 2, 1, 0, 0, 0, 1, 0x80, 0xC2, 0xD7, 0x2F};
+    data.resize(200, 1);
+    EXPECT_EQ(error(square(data)), refusal);
+    data = {'D', 'R', 'A', 'C', 'O', 1, 3, 1, 0, 0, 0, 1, 0, 0, 0, 0x00, 0xE1, 0xF5, 0x05};
+    data.resize(200, 1);
+    EXPECT_EQ(error(square(data)), refusal);
+}
+
+TEST_F(GltfDraco, PrimitivesThatShareTheirBytesAreBounded) {
+    std::vector<std::uint8_t> data = kSequential;
+    data.resize(10'000);  // as if there were much in it
+    GltfWriter gltf = square(data);
+    EXPECT_EQ(error(gltf), "");
+    json& primitives = gltf.root["meshes"][0]["primitives"];
+    primitives.push_back(json(primitives[0]));
+    const std::string message = error(gltf);
+    EXPECT_TRUE(message.ends_with(": its bytes belong to others, too")) << message;
 }
 
 TEST_F(GltfDraco, OnlyTrianglesAreDecoded) {
