@@ -119,9 +119,9 @@ TEST_F(Faults, AnyAllocationMayFail) {
     std::mt19937 random(1);
     long done = 0;
     // All of the first thousand, then some; in a hurry, some of both.
-    const long step = is_thorough() ? 1 : 11;
+    const long step = is_thorough() ? 1 : 17;
     for (long n = 1; n <= count + step;
-         n += n < 1000 ? step : 1 + static_cast<long>(random() % 100)) {
+         n += n < 1000 ? step : 1 + static_cast<long>(random() % 200)) {
         for (const bool goes_on : {false, true}) {
             SCOPED_TRACE("allocation " + std::to_string(n) + (goes_on ? " and all after it" : ""));
             Words environment{"LD_PRELOAD=" FAULT_SHIM, "FAULT_ALLOCATION=" + std::to_string(n)};
