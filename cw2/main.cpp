@@ -1,6 +1,5 @@
 // cw2: draws a baked scene, in a window or into a file.
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>

@@ -28,10 +28,12 @@ clocale         | (?:setlocale|localeconv|newlocale|uselocale|lconv|LC_\w+)\b
 cmath           | (?:abs|fabs|sqrt|cbrt|hypot|pow|exp2?|expm1|log(?:2|10|1p|b)?|ilogb|ldexp|scalbn|frexp|modf|a?sinh?|a?cosh?|a?tanh?|atan2|floor|ceil|round|l?l?round|nearbyint|l?l?rint|trunc|fmod|remainder|fmax|fmin|fma|isnan|isfinite|isinf|signbit|copysign|nextafter|nexttoward|nan|lerp|HUGE_VAL|NAN|INFINITY|M_PI|erfc?|tgamma|lgamma)f?\b
 compare         | (?:(?:strong|weak|partial)_ordering)|.*<=>
 condition_variable | std::condition_variable
+climits         | (?:[A-Z]+_(?:MAX|MIN|BIT))\b
 csetjmp         | (?:setjmp|longjmp|jmp_buf)
 csignal         | (?:raise|signal|SIG[A-Z]+)\b
 cstddef         | (?:size_t|ptrdiff_t|byte|to_integer|offsetof|nullptr_t|max_align_t|NULL)\b
 cstdint         | (?:u?int(?:_fast|_least)?(?:8|16|32|64|ptr|max)_t|U?INT\d+_(?:MAX|MIN|C)|SIZE_MAX)\b
+cstdarg         | va_(?:list|start|arg|end|copy)\b
 cstdio          | (?:[fs]?n?printf|f?puts|f?putc|fputs|putchar|fopen|fclose|fread|fwrite|fseek|ftell|fflush|setvbuf|remove|rename|tmpfile|fileno|rewind|perror|FILE|stdout|stderr|stdin|EOF)\b
 cstdlib         | (?:getenv|setenv|putenv|exit|_Exit|quick_exit|abort|strto\w+|ato[ifl]|malloc|calloc|realloc|free|aligned_alloc|system|EXIT_\w+|div|rand|qsort|mkdtemp|realpath)\b
 cstring         | (?:mem(?:cpy|cmp|set|move|chr)|str(?:len|n?cmp|n?cpy|r?chr|str|error|n?cat|spn|cspn))\b
@@ -68,12 +70,14 @@ thread          | std::(?:j?thread|this_thread)\b
 tuple           | std::(?:tuple|tie|make_tuple|forward_as_tuple|apply|ignore|get|tuple_cat|tuple_size\w*|tuple_element\w*)\b
 type_traits     | std::(?:is_\w+|remove_\w+|add_\w+|decay\w*|conditional\w*|enable_if\w*|underlying_type\w*|common_type\w*|make_(?:un)?signed\w*|true_type|false_type|integral_constant|void_t|has_unique_object_representations\w*|invoke_result\w*|type_identity\w*|extent\w*)
 unordered_map   | std::unordered_(?:multi)?map\b
+unordered_set   | std::unordered_(?:multi)?set\b
 utility         | std::(?:move|pair|make_pair|swap|exchange|forward|declval|index_sequence\w*|make_index_sequence|integer_sequence|in_range|cmp_\w+|as_const|piecewise_construct|in_place\w*|get|unreachable|to_underlying)\b
 vector          | std::vector\b
 CLI/CLI.hpp     | CLI::
 dlfcn.h         | (?:dlopen|dlsym|dlclose|dlerror|RTLD_)
 emmintrin.h     | (?:_mm_|__m128)
 fast_float/fast_float.h | fast_float::
+dirent.h        | (?:(?:open|read|close)dir|dirfd|dirent|DIR)\b
 fcntl.h         | (?:open|openat|fcntl|posix_fadvise|O_[A-Z]+)\b
 fmt/format.h    | (?:fmt::|FMT_)
 GLFW/glfw3.h    | (?:glfw|GLFW)

@@ -1,6 +1,5 @@
 // What happens to a bake at its worst moments: the file that was there stays, or the new one takes
 // its place, whole, and a message says which.
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>

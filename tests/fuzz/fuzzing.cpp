@@ -37,8 +37,9 @@ const std::filesystem::path& folder() {
                                              .channels = common::PngPicture::Channels::rgba,
                                              .says_srgb = false,
                                              .texels = texels});
-        std::ofstream(made / "a.png").write(reinterpret_cast<const char*>(png.data()),
-                                            static_cast<std::streamsize>(png.size()));
+        std::ofstream(made / "a.png")
+            .write(reinterpret_cast<const char*>(png.data()),
+                   static_cast<std::streamsize>(png.size()));
         return true;
     }();
     static_cast<void>(has_image);

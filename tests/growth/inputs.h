@@ -1,7 +1,6 @@
 // Inputs that would be the undoing of a careless reader, in any size.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <vector>
 
