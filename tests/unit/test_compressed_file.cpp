@@ -12,8 +12,7 @@ namespace {
 using namespace small_scene;
 
 /// The scene with its geometry compressed.
-SmallScene compressed() {
-    SmallScene scene;
+SmallScene compressed(SmallScene scene = {}) {
     bake::PackedGeometry geometry;
     geometry.meshes = scene.meshes;
     geometry.vertices.assign(scene.vertices.begin(), scene.vertices.end());
@@ -81,6 +80,31 @@ TEST(CompressedFile, DamageIsSaidOrMakesOtherGeometry) {
         }
     }
     EXPECT_GT(refused, 100u);
+}
+
+/// A large flat mesh shrinks to less than a thousandth.
+TEST(CompressedFile, NextToNothingIsPlausible) {
+    constexpr std::uint32_t kChunks = 256;
+    constexpr std::uint32_t kChunkIndices = 3 * kMaxChunkTriangles;
+    SmallScene scene;
+    scene.meshes.resize(1);
+    MeshRecord& mesh = scene.meshes.front();
+    mesh.vertex_count = kMaxMeshVertices;
+    mesh.index_count = kChunks * kChunkIndices;
+    mesh.chunk_count = kChunks;
+    scene.chunks.clear();
+    for (std::uint32_t i = 0; i < kChunks; ++i) {
+        scene.chunks.push_back(
+            {.first_index = i * kChunkIndices, .index_count = kChunkIndices, .radius = 1.0f});
+    }
+    scene.vertices.assign(mesh.vertex_count * vertex_layout(mesh.forms).stride, std::byte{0});
+    scene.indices.assign(mesh.index_count, 0);
+    scene.scene.vertex_bytes = scene.vertices.size();
+    scene.scene.index_count = scene.indices.size();
+    const SmallScene small = compressed(scene);
+    EXPECT_LT(1000 * (small.encoded_vertices.size() + small.encoded_indices.size()),
+              scene.vertices.size() + 2 * scene.indices.size());
+    EXPECT_EQ(complaint_of_decoding(written(small)), "");
 }
 
 /// No more memory is taken than the stored bytes make plausible.
