@@ -679,7 +679,9 @@ compare_panel() {
     if [[ -n ${CW2_UPDATE_GOLDENS:-} ]]; then
         cp "$picture" "$golden"
     else
-        "$tools/compare_images" --report "$work/report" "$golden" "$picture" || fail "the panel"
+        # Another version of Dear ImGui rounds corners and ends lines a little otherwise.
+        "$tools/compare_images" --report "$work/report" "$golden" "$picture" ||
+            "$tools/compare_images" "${golden%.png}.imgui190.png" "$picture" || fail "the panel"
     fi
     close_window
 }
