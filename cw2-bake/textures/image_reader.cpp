@@ -83,11 +83,12 @@ extern "C" __attribute__((visibility("default"))) bool cw2_bake_image_reader(con
         return true;
     } catch (const std::bad_alloc&) {
         error.clear();
+        return false;
     } catch (const std::exception& exception) {
         error = exception.what();
     } catch (...) {
-        error = "cannot be read";
     }
+    if (error.empty()) error = "cannot be read";
     return false;
 }
 
