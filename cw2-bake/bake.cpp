@@ -46,9 +46,14 @@ bool is_gltf(const std::filesystem::path& path) {
     return common::file_kind(path) == common::FileKind::gltf;
 }
 
-SourceScene read_scene(const std::filesystem::path& path, const Warn& warn) {
+SourceScene read_scene(const Settings& settings, const Warn& warn) {
+    const std::filesystem::path& path = settings.input;
+    // Empty: files may be anywhere.
+    std::filesystem::path root;
+    if (settings.restricted) root = path.has_parent_path() ? path.parent_path() : ".";
     try {
-        return is_gltf(path) ? read_gltf(path, warn) : read_obj(path, warn);
+        return is_gltf(path) ? read_gltf(path, warn, root)
+                             : read_obj(path, warn, kObjChunkBytes, root);
     } catch (const std::bad_alloc&) {
         throw BakeError(path.string() + ": there is not enough memory to read it");
     }
@@ -245,7 +250,7 @@ std::string run_stages(const Settings& settings, const Warn& warn, StageClock& c
                                     std::max<std::size_t>(threads, 1));
 
     clock.begin("read");
-    SourceScene scene = read_scene(settings.input, warn);
+    SourceScene scene = read_scene(settings, warn);
     const std::vector<std::filesystem::path> inputs = input_files(scene, settings);
     refuse_overwriting(settings, inputs);
     const std::string rule = settings.depfile ? depfile_text(settings.output, inputs) : "";

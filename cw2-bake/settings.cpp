@@ -75,6 +75,8 @@ void add_options(CLI::App& app, Settings& settings) {
     app.add_option("--stats", settings.stats, "write counts, errors, times and memory as JSON")
         ->type_name("FILE.json");
     app.add_flag("--strict", settings.strict, "a warning is an error");
+    app.add_flag("--restrict", settings.restricted,
+                 "read nothing outside the scene's folder, whatever the scene names");
     app.add_flag("--quiet", settings.quiet, "print errors only");
     app.add_flag("--inspect", settings.inspect, "print what is in a baked file");
     app.add_flag("--json", settings.json, "with --inspect: print JSON");
@@ -105,7 +107,7 @@ std::optional<Settings> parse_settings(int argc, const char* const* argv,
     settings.is_baked = common::file_kind(settings.input) == common::FileKind::baked;
     if (settings.inspect) return settings;
     for (const char* option : {"--up", "--tangent-frame", "--positions", "--textures", "--compress",
-                               "--threads", "--stats"}) {
+                               "--threads", "--stats", "--restrict"}) {
         if (settings.is_baked && app.count(option) > 0) {
             throw UsageError(fmt::format("{} is not for files that are baked already", option));
         }

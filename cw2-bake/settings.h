@@ -28,6 +28,7 @@ struct Settings {
     std::optional<std::filesystem::path> depfile;  ///< where to write what the output depends on
     std::optional<std::filesystem::path> stats;    ///< where to write what the bake did, as JSON
     bool strict = false;                           ///< a warning is an error
+    bool restricted = false;                       ///< names lead to nowhere but the input's folder
     bool quiet = false;                            ///< print errors only
     bool is_baked = false;                         ///< the input is a .cw2mesh file
     bool inspect = false;                          ///< print what is in the input, a .cw2mesh file

@@ -153,6 +153,7 @@ SourceBake::SourceBake(const fs::path& source, const BakeSettings& settings,
     options_ = {"--textures", settings.uncompressed ? "lossless" : "bc"};
     if (settings.z_up) options_.insert(options_.end(), {"--up", "z"});
     if (settings.strict) options_.emplace_back("--strict");
+    if (settings.restricted) options_.emplace_back("--restrict");
     key_ =
         fmt::format("{}\n{}\n{}\n", source_.string(), fmt::join(options_, " "), stamp_of(baker_));
     folder_ = cache_folder();
@@ -367,6 +368,7 @@ std::unique_ptr<SourceBake> bake_of(const Options& options, const Device& device
     if (!is_source(options.scene)) return nullptr;
     const BakeSettings settings{.z_up = options.z_up,
                                 .strict = options.strict,
+                                .restricted = options.restricted,
                                 .uncompressed = device.is_cpu() || !device.samples_blocks()};
     return std::make_unique<SourceBake>(options.scene, settings, std::move(tell));
 }

@@ -20,6 +20,7 @@ namespace cw2 {
 struct BakeSettings {
     bool z_up = false;          ///< --up z
     bool strict = false;        ///< --strict
+    bool restricted = false;    ///< --restrict
     bool uncompressed = false;  ///< textures without blocks, for devices that would decode them
 };
 

@@ -88,11 +88,25 @@ std::vector<std::string> readings_of(std::string_view name) {
     return readings;
 }
 
+FileFinder::FileFinder(const fs::path& root) {
+    std::error_code error;
+    if (!root.empty()) root_ = fs::canonical(root, error);
+    if (error) root_ = root;
+}
+
+bool FileFinder::may_look_at(const fs::path& path) const {
+    if (root_.empty()) return true;
+    std::error_code error;
+    const fs::path absolute = fs::absolute(path, error);
+    const fs::path real = fs::weakly_canonical(absolute, error);
+    return !error && std::ranges::mismatch(root_, real).in1 == root_.end();
+}
+
 const FileFinder::Listing& FileFinder::list(const fs::path& folder) {
     static const Listing kEmpty;
     const auto known = listings_.find(folder);
     if (known != listings_.end()) return known->second;
-    if (entries_left_ == 0) return kEmpty;
+    if (entries_left_ == 0 || !may_look_at(folder.empty() ? "." : folder)) return kEmpty;
     entries_left_ -= std::min(entries_left_, kEntriesOfFolder);
     Listing& listing = listings_[folder];
     std::error_code error;
@@ -132,7 +146,8 @@ fs::path FileFinder::in_another_case(const fs::path& folder, const std::string& 
         if (next.size() > kMostPaths) return {};
         paths = std::move(next);
     }
-    std::erase_if(paths, [](const fs::path& found) { return !is_file(found); });
+    std::erase_if(paths,
+                  [this](const fs::path& found) { return !may_look_at(found) || !is_file(found); });
     return paths.size() == 1 ? paths.front() : fs::path();
 }
 
@@ -162,12 +177,18 @@ std::string FileFinder::near_misses(const fs::path& named) {
 }
 
 FoundFile FileFinder::find(const fs::path& folder, std::span<const std::string> readings) {
-    for (const std::string& reading : readings)
-        if (is_there(folder / reading)) return {folder / reading, true};
+    bool is_outside = false;
+    for (const std::string& reading : readings) {
+        const bool may_look = may_look_at(folder / reading);
+        if (may_look && is_there(folder / reading)) return {folder / reading, true};
+        is_outside = is_outside || !may_look;
+    }
+    constexpr std::string_view kOutside = "it is outside the scene's folder";
     // Nobody names a file like this, and to look for it takes time.
     constexpr std::ptrdiff_t kMostFolders = 64;
     if (std::ranges::count(readings.front(), '/') > kMostFolders)
-        return {folder / readings.front(), false};
+        return {folder / readings.front(), false, std::string(is_outside ? kOutside : ""),
+                is_outside};
     const auto taken = [](const fs::path& file) {
         return FoundFile{file, true, file.string() + " is taken"};
     };
@@ -178,11 +199,12 @@ FoundFile FileFinder::find(const fs::path& folder, std::span<const std::string> 
     for (const std::string& reading : readings) {
         const std::string last = last_component(reading);
         if (last.empty() || last == reading) continue;
-        if (is_file(folder / last)) return taken(folder / last);
+        if (may_look_at(folder / last) && is_file(folder / last)) return taken(folder / last);
         const fs::path file = in_another_case(folder, last);
         if (!file.empty()) return taken(file);
     }
     const fs::path named = folder / readings.front();
+    if (is_outside) return {named, false, std::string(kOutside), true};
     std::string note = near_misses(named);
     const std::string last = last_component(readings.front());
     if (note.empty() && last != readings.front()) note = near_misses(folder / last);

@@ -147,6 +147,8 @@ FoundFile resolve(FileFinder& finder, const std::filesystem::path& gltf, std::st
         return name.empty() || name.find('\0') != name.npos;
     });
     FoundFile found = is_name ? finder.find(gltf.parent_path(), readings) : FoundFile{};
+    if (found.is_outside)
+        throw BakeError(fmt::format("{} is outside the scene's folder", in_quotes(uri)));
     if (!is_name || ((elsewhere || !decoded) && !found.exists))
         throw BakeError(fmt::format("{} is no relative path", in_quotes(uri)));
     if (found.exists && (elsewhere || uri.find('\\') != uri.npos))
@@ -158,8 +160,9 @@ FoundFile resolve(FileFinder& finder, const std::filesystem::path& gltf, std::st
 
 class Loader {
  public:
-    Loader(GltfFile& file, json& root, Bytes binary, const Warn& warn)
-        : file_(file), root_(root), binary_(binary), warn_(warn) {}
+    Loader(GltfFile& file, json& root, Bytes binary, const Warn& warn,
+           const std::filesystem::path& folder)
+        : file_(file), root_(root), binary_(binary), warn_(warn), finder_(folder) {}
 
     void load_buffers() {
         for (std::size_t i = 0; i < array("buffers").size(); ++i) {
@@ -329,7 +332,8 @@ Bytes GltfFile::view_bytes(int index) const {
     return buffer.subspan(view.byteOffset, view.byteLength);
 }
 
-GltfFile load_gltf(const std::filesystem::path& path, const Warn& warn) {
+GltfFile load_gltf(const std::filesystem::path& path, const Warn& warn,
+                   const std::filesystem::path& root) {
     GltfFile file;
     file.path = path;
     Bytes bytes;
@@ -339,18 +343,18 @@ GltfFile load_gltf(const std::filesystem::path& path, const Warn& warn) {
         throw BakeError(error.what());
     }
     const GltfChunks chunks = split_gltf(bytes, path);
-    json root = parse_gltf_json(chunks.json, path);
-    Loader loader(file, root, chunks.binary, warn);
+    json json_root = parse_gltf_json(chunks.json, path);
+    Loader loader(file, json_root, chunks.binary, warn, root);
     loader.load_buffers();
     for (const auto& part : file.mapped) file.size += part.bytes().size();
     for (const auto& part : file.decoded) file.size += part.size();
     loader.find_images();
-    file.unread = find_unread(root);
-    const auto views = root.find("bufferViews");
-    const std::size_t view_count = views == root.end() ? 0 : views->size();
+    file.unread = find_unread(json_root);
+    const auto views = json_root.find("bufferViews");
+    const std::size_t view_count = views == json_root.end() ? 0 : views->size();
     loader.prepare_for_tinygltf();
 
-    const std::string text = root.dump(-1, ' ', false, json::error_handler_t::replace);
+    const std::string text = json_root.dump(-1, ' ', false, json::error_handler_t::replace);
     std::string error, warning;
     tinygltf::TinyGLTF parser;
     if (!parser.LoadASCIIFromString(&file.model, &error, &warning, text.data(),

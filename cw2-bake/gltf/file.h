@@ -48,7 +48,8 @@ struct GltfFile {
 
 /// Throws BakeError "PATH: /json/pointer: what is wrong" for whatever is malformed and for a buffer
 /// that is missing; what is wrong with an image is for those who use it. Warns of a buffer that is
-/// another file than the one that is named.
-GltfFile load_gltf(const std::filesystem::path& path, const Warn& warn);
+/// another file than the one that is named. Files are looked for as FileFinder does with `root`.
+GltfFile load_gltf(const std::filesystem::path& path, const Warn& warn,
+                   const std::filesystem::path& root);
 
 }  // namespace bake

@@ -33,8 +33,9 @@ SourceScene triangles_of(const GltfFile& file, const GltfNodes& nodes, const War
 
 }  // namespace
 
-SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn) {
-    GltfFile file = load_gltf(path, warn);
+SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn,
+                      const std::filesystem::path& root) {
+    GltfFile file = load_gltf(path, warn, root);
     for (const std::string& what : file.unread) warn(path.string() + ": " + what);
     GltfNodes nodes = walk_nodes(file, warn);
     decode_draco(file, shown_meshes(file, nodes));

@@ -17,6 +17,9 @@ namespace bake {
 /// - UVs are turned to v up, and hold KHR_texture_transform.
 /// - The first perspective camera and the first point light of KHR_lights_punctual (see
 ///   gltf_light.h) become the scene's.
-SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn);
+/// - What it names is looked for as FileFinder does with `root`; an image outside counts as absent,
+///   with a warning.
+SourceScene read_gltf(const std::filesystem::path& path, const Warn& warn,
+                      const std::filesystem::path& root = {});
 
 }  // namespace bake

@@ -165,10 +165,14 @@ std::optional<TextureStatement> MtlReader::texture(std::string_view words) {
         parse_texture(words, path_.parent_path(), finder_, [&](const std::string& option) {
             note(fmt::format("the texture option {} is not supported and left out", option));
         });
-    if (result) {
-        result->map.stated_in = place();
-    } else {
+    if (!result) {
         warn_(place() + ": no image is named");
+    } else if (result->is_outside) {
+        warn_(fmt::format("{}: {}: is outside the scene's folder", place(),
+                          result->map.file.string()));
+        result.reset();
+    } else {
+        result->map.stated_in = place();
     }
     return result;
 }

@@ -37,6 +37,7 @@ struct MtlMaterial {
 /// - d, Tr below opaque with no map_d: blend and opacity, with one warning for the file, since
 ///   it is drawn opaque.
 /// - Ka, Ks, Ni, illum 0 to 2, and what states its neutral value (Tf 1 1 1, Pc 0) say nothing.
+/// - An image that is outside of where the finder looks counts as absent, with a warning.
 /// - Texture options -s, -o, -clamp, -imfchan and -bm are honoured.
 std::vector<MtlMaterial> read_mtl(const std::filesystem::path& path,
                                   const std::function<bool(std::string_view)>& wanted,

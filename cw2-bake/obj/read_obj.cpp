@@ -116,8 +116,8 @@ class Libraries {
  public:
     /// Adds the files that it reads to `files`.
     Libraries(const std::filesystem::path& obj, std::string_view text, const Warn& warn,
-              std::vector<std::filesystem::path>& files)
-        : obj_(obj), lines_(text), warn_(warn), files_(files) {}
+              const std::filesystem::path& root, std::vector<std::filesystem::path>& files)
+        : obj_(obj), lines_(text), warn_(warn), files_(files), finder_(root) {}
 
     /// `offsets` are those of ObjContents::material_offsets.
     void read(const std::vector<ObjStatement>& statements,
@@ -257,7 +257,7 @@ void Libraries::read(const std::vector<ObjStatement>& statements,
             read_library(found.file, stated_in, materials);
         } else {
             some_missing_ = true;
-            files_.push_back(found.file);
+            if (!found.is_outside) files_.push_back(found.file);
         }
     }
 }
@@ -278,7 +278,8 @@ void Libraries::warn_of_unknown(const std::vector<MtlMaterial>& materials,
 
 }  // namespace
 
-SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::size_t chunk_bytes) {
+SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::size_t chunk_bytes,
+                     const std::filesystem::path& root) {
     const common::MappedFile file = map_file(path);
     const std::string name = path.string();
     const std::string_view text = without_padding(
@@ -303,7 +304,7 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
     if (contents.lacks_normals) prepare_missing_normals(contents.smoothing_uses, scene);
 
     scene.files.push_back(path);
-    Libraries libraries(path, text, warn, scene.files);
+    Libraries libraries(path, text, warn, root, scene.files);
     std::vector<MtlMaterial> materials;
     for (const std::string& material : contents.material_names) {
         materials.push_back({.source = {.name = material}});

@@ -9,6 +9,9 @@
 
 namespace bake {
 
+/// How much of the text one thread parses at a time.
+inline constexpr std::size_t kObjChunkBytes = 256 * 1024;
+
 /// Reads an OBJ and the MTLs it names. Throws BakeError, with the line, for what cannot be read:
 /// no such file, no faces, a position that is no finite number, an index of one that is out of
 /// range, a malformed face. What is wrong with a normal, a UV, a colour or a smoothing group is a
@@ -16,8 +19,10 @@ namespace bake {
 /// (curves, lines, faces of fewer than three corners, unknown statements) is left out with one a
 /// kind. Faces before any `usemtl` get a material
 /// "default". The text is parsed in pieces of about `chunk_bytes`, on as many threads as TBB is
-/// allowed; the result depends on neither.
+/// allowed; the result depends on neither. What it names is looked for as FileFinder does with
+/// `root`.
 SourceScene read_obj(const std::filesystem::path& path, const Warn& warn,
-                     std::size_t chunk_bytes = 256 * 1024);
+                     std::size_t chunk_bytes = kObjChunkBytes,
+                     const std::filesystem::path& root = {});
 
 }  // namespace bake

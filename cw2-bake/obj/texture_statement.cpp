@@ -139,6 +139,7 @@ std::optional<TextureStatement> parse_texture(
     const std::vector<std::string> readings = readings_of(words);
     const FoundFile found = finder.find(folder, readings);
     statement.map.file = found.file;
+    statement.is_outside = found.is_outside;
     if (!found.note.empty()) {
         statement.map.note =
             fmt::format("{}: no such file; {}", (folder / readings[0]).string(), found.note);

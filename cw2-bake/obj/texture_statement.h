@@ -22,9 +22,10 @@ struct MtlTransform {
 };
 
 struct TextureStatement {
-    TextureMap map;          ///< without `stated_in`
-    MtlTransform transform;  ///< -s and -o
-    float bump_scale = 1;    ///< -bm
+    TextureMap map;           ///< without `stated_in`
+    MtlTransform transform;   ///< -s and -o
+    float bump_scale = 1;     ///< -bm
+    bool is_outside = false;  ///< the image is where the finder may not look
 };
 
 /// A word as a number, `+` allowed before it.

@@ -1,11 +1,16 @@
 // The module around OpenImageIO, loaded by read_image.cpp when the first image is read: linking it
 // would make every start of the program load some 250 libraries, a third of a second and 130 MiB.
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <mutex>
 #include <new>
+#include <set>
+#include <string>
 
 #include "cw2-bake/textures/read_image.h"
 
@@ -40,7 +45,35 @@ void check_flat(const OIIO::ImageSpec& spec) {
     }
 }
 
+/// FFmpeg's readers follow what a movie names, wherever it is.
+void refuse_movies(const std::filesystem::path& path) {
+    const std::string extension = path.extension().string();
+    const std::string formats = OIIO::get_string_attribute("extension_list");
+    for (const std::string& format : OIIO::Strutil::splits(formats, ";")) {
+        if (!format.starts_with("ffmpeg:")) continue;
+        for (const std::string& name :
+             OIIO::Strutil::splits(format.substr(format.find(':') + 1), ","))
+            if (OIIO::Strutil::iequals("." + name, extension))
+                throw ImageError("is a movie, not an image");
+    }
+}
+
+/// Throws for more texels than the file can hold, before there is memory for them.
+void check_held(const OIIO::ImageInput& input, const std::filesystem::path& path) {
+    // These store texels as they are, or runs of equal ones.
+    const std::set<std::string> plain{"pnm", "targa", "hdr",    "bmp", "sgi",
+                                      "iff", "dpx",   "cineon", "rla", "dds"};
+    // BMP's: 255 texels of three channels in two bytes.
+    constexpr std::uint64_t kMostInflation = 512;
+    const OIIO::ImageSpec& spec = input.spec();
+    if (!plain.contains(input.format_name()) && spec.get_string_attribute("compression") != "none")
+        return;
+    if (spec.image_bytes(true) / kMostInflation > std::filesystem::file_size(path))
+        throw ImageError("is damaged: it is too short for the size that it states");
+}
+
 Image read(const char* path) {
+    refuse_movies(path);
     OIIO::ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;
     const auto input = OIIO::ImageInput::open(path, &hints);
@@ -49,6 +82,7 @@ Image read(const char* path) {
     }
     const OIIO::ImageSpec& spec = input->spec();
     check_flat(spec);
+    check_held(*input, path);
 
     Image image;
     image.width = static_cast<std::uint32_t>(spec.width);

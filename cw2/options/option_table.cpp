@@ -274,6 +274,7 @@ std::vector<Setting> all_settings() {
               &O::scene),
         up_setting(),
         flag("strict", "a warning of the bake is an error", &O::strict),
+        flag("restrict", "the bake reads nothing outside the scene's folder", &O::restricted),
         value("output", "FILE.png|FILE.exr", "write a picture and end", &O::output),
         value("size", "WIDTHxHEIGHT", "pixels [1280x720]", &O::size),
         view_setting(),

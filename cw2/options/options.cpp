@@ -102,8 +102,8 @@ void apply_config(const std::filesystem::path& path, const std::vector<Setting>&
 void require_sense(const Options& options) {
     if (options.list_devices || options.list_views) return;
     if (options.scene.empty()) throw UsageError("no scene is given; see --help");
-    if ((options.z_up || options.strict) && !is_source(options.scene))
-        throw UsageError("--up and --strict are for scenes that are not baked yet");
+    if ((options.z_up || options.strict || options.restricted) && !is_source(options.scene))
+        throw UsageError("--up, --strict and --restrict are for scenes that are not baked yet");
     if ((options.output || options.pixel) && options.files.size() > 1) {
         throw UsageError(fmt::format("--output and --pixel take one scene: '{}' is another",
                                      options.files[1].string()));

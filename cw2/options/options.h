@@ -59,8 +59,9 @@ inline constexpr float kVerticalFov = 60.0f;  ///< degrees, where nobody asks fo
 struct Options {
     std::filesystem::path scene;
     std::vector<std::filesystem::path> files;  ///< where there are several; `scene` is the first
-    bool z_up = false;    ///< of a scene that is not baked yet: its up axis is +Z
-    bool strict = false;  ///< the same: a warning of the bake is an error
+    bool z_up = false;        ///< of a scene that is not baked yet: its up axis is +Z
+    bool strict = false;      ///< the same: a warning of the bake is an error
+    bool restricted = false;  ///< the same: nothing outside the scene's folder is read
     std::optional<std::filesystem::path> output;  ///< none: open a window, but for `pixel`
     PictureSize size;
     View view = interop::kViewShaded;

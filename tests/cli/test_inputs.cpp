@@ -231,4 +231,47 @@ TEST_F(Inputs, GitLfsPointersAreCalledThatWhereverTheyStand) {
               "cw2-bake: warning: scene.obj:1: scene.mtl: " + what);
 }
 
+TEST_F(Inputs, RestrictedBakesReadNothingOutsideTheScenesFolder) {
+    fs::create_directory(here("scene"));
+    for (const char* name : {"scene.obj", "scene.mtl", "colors.png", "rough 1.png", "mask.png"})
+        fs::copy_file(here(name), here("scene") / name);
+    fs::create_symlink("../normals.png", here("scene/normals.png"));
+    const Outcome all = bake({"scene/scene.obj", "-o", "all.cw2mesh"});
+    EXPECT_EQ(all.err, "");
+    const Outcome restricted =
+        bake({"scene/scene.obj", "-o", "restricted.cw2mesh", "--restrict", "--depfile", "deps.mk"});
+    EXPECT_EQ(restricted.status, 0);
+    EXPECT_EQ(restricted.err,
+              "cw2-bake: warning: scene/scene.mtl:6: scene/normals.png: is outside the scene's "
+              "folder\n");
+    EXPECT_EQ(read("deps.mk").find("normals"), std::string::npos);
+    EXPECT_EQ(bake({"scene/scene.obj", "-o", "none.cw2mesh", "--restrict", "--strict"}).status, 1);
+    EXPECT_FALSE(fs::exists(here("none.cw2mesh")));
+    // The same as if nobody named the normal map.
+    std::string mtl = read("scene.mtl");
+    write("scene/scene.mtl", mtl.erase(mtl.find("norm normals.png\n"), 17));
+    bake({"scene/scene.obj", "-o", "bare.cw2mesh"});
+    EXPECT_TRUE(read("restricted.cw2mesh") == read("bare.cw2mesh"));
+
+    write("scene/up.obj", "mtllib ../scene.mtl\n" + read("scene.obj").substr(15));
+    fs::remove(here("scene/scene.mtl"));
+    const Outcome library = bake({"scene/up.obj", "-o", "up.cw2mesh", "--restrict"});
+    EXPECT_NE(library.err.find("scene/up.obj:1: no material library '../scene.mtl'; it is outside "
+                               "the scene's folder\n"),
+              std::string::npos)
+        << library.err;
+
+    bake_well({"scene.obj", "-o", "whole.gltf"});
+    std::string gltf = read("whole.gltf");
+    const std::size_t data = gltf.find("data:application");
+    const std::size_t end = gltf.find('"', data);
+    write("scene/outside.gltf", gltf.replace(data, end - data, "../buffer.bin"));
+    write("buffer.bin", std::string(1 << 20, '\0'));
+    const Outcome buffer = bake({"scene/outside.gltf", "-o", "b.cw2mesh", "--restrict"});
+    EXPECT_EQ(buffer.status, 1);
+    EXPECT_NE(buffer.err.find("/buffers/0: '../buffer.bin' is outside the scene's folder\n"),
+              std::string::npos)
+        << buffer.err;
+}
+
 }  // namespace

@@ -103,6 +103,14 @@ TEST_F(SourceBake, PassesOptionsOnAndErrorsBack) {
     EXPECT_NE(read("y.png"), read("z.png"));
     EXPECT_EQ(entries().size(), 2u);
 
+    const TemporaryFolder elsewhere;
+    fs::rename(here("colors.png"), elsewhere / "colors.png");
+    fs::create_symlink(elsewhere / "colors.png", here("colors.png"));
+    EXPECT_EQ(draw("scene.obj", "z.png").err, "");
+    const Outcome restricted = draw("scene.obj", "z.png", {"--restrict"});
+    EXPECT_NE(restricted.err.find("colors.png: is outside the scene's folder\n"), std::string::npos)
+        << restricted.err;
+
     fs::remove(here("mask.png"));
     const Outcome strict = draw("scene.obj", "strict.png", {"--strict"});
     EXPECT_EQ(strict.status, 1);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "cw2-bake/textures/read_image.h"
 #include "cw2-bake/textures/textures.h"
 #include "image_files.h"
 #include "mesh-format/blocks.h"
@@ -360,6 +361,45 @@ TEST(BadImages, AWarningMayEndTheBake) {
     const bake::Warn strict = [](const std::string& line) { throw bake::BakeError(line); };
     EXPECT_THROW(bake::bake_textures(materials, bake::TextureMode::lossless, {}, strict, {}),
                  bake::BakeError);
+}
+
+TEST(ImageFiles, AFileThatIsTooShortForItsSizeIsRefusedBeforeThereIsMemoryForIt) {
+    const TemporaryFolder folder;
+    const std::string tga{0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x40, 0, 0x40, 32, 8};
+    const std::pair<const char*, std::string> table[] = {
+        {"a.ppm", "P6 16384 16384 255\n"},
+        {"a.pgm", "P2 16384 16384 255\n0 0 0\n"},
+        {"a.pfm", "PF\n16384 16384\n-1.0\n"},
+        {"a.tga", tga},
+        {"a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 16384\n"}};
+    for (const auto& [name, bytes] : table) {
+        write_bytes(folder / name, bytes);
+        try {
+            bake::read_image(folder / name);
+            FAIL() << name;
+        } catch (const bake::ImageError& error) {
+            EXPECT_STREQ(error.what(), "is damaged: it is too short for the size that it states");
+        }
+    }
+    // What is as short as can be is read.
+    write_image(
+        folder / "flat.tga", 512, 512, 4,
+        [](int, int) {
+            return std::vector{0.0, 0.0, 0.0, 1.0};
+        },
+        OIIO::TypeDesc::UINT8, "compression", "rle");
+    EXPECT_EQ(bake::read_image(folder / "flat.tga").width, 512u);
+}
+
+TEST(ImageFiles, AMovieIsNoImage) {
+    const TemporaryFolder folder;
+    write_bytes(folder / "a.AVI", "ffconcat version 1.0\nfile 'b.png'\n");
+    try {
+        bake::read_image(folder / "a.AVI");
+        FAIL();
+    } catch (const bake::ImageError& error) {
+        EXPECT_STREQ(error.what(), "is a movie, not an image");
+    }
 }
 
 }  // namespace

@@ -108,4 +108,50 @@ TEST(Mtllib, IsReadInEveryWayThatFindsALibrary) {
                      "scene.obj:1: no material library 'two.mtl'", "(grey)"}));
 }
 
+/// A scene's folder in a folder with a file that is none of its business.
+class RestrictedFinder : public testing::Test {
+ protected:
+    RestrictedFinder() {
+        for (const char* folder : {"scene/tex", "scene2"})
+            fs::create_directories(folder_.path() / folder);
+        for (const char* name : {"secret.png", "scene2/secret.png", "scene/tex/red.png"})
+            folder_.write(name, "");
+        fs::create_symlink("../secret.png", root_ / "link.png");
+        fs::create_symlink("tex/red.png", root_ / "inside.png");
+        fs::create_symlink("..", root_ / "up");
+    }
+    bake::FoundFile find(const std::string& name) {
+        bake::FileFinder finder(root_);
+        return finder.find(root_ / "tex", bake::readings_of(name));
+    }
+
+    TempFolder folder_;
+    fs::path root_ = folder_.path() / "scene";
+};
+
+TEST_F(RestrictedFinder, SeesNothingOutside) {
+    const std::string absolute = (folder_.path() / "secret.png").string();
+    for (const std::string& name :
+         {absolute, std::string("../../secret.png"), std::string("..\\..\\secret.png"),
+          std::string("../link.png"), std::string("../up/secret.png"),
+          std::string("../UP/secret.png"), std::string("../../scene2/secret.png"),
+          std::string("../../SECRET.PNG"), std::string("/etc/passwd"), std::string("../..")}) {
+        const bake::FoundFile found = find(name);
+        EXPECT_FALSE(found.exists) << name;
+        EXPECT_EQ(found.note.find("there is"), found.note.npos) << name << ": " << found.note;
+        EXPECT_EQ(found.is_outside, name != "../UP/secret.png") << name;
+    }
+    // Near misses would tell of others' files.
+    EXPECT_EQ(find("../../secre.png").note, "it is outside the scene's folder");
+}
+
+TEST_F(RestrictedFinder, FindsWhatIsInside) {
+    for (const std::string name : {"red.png", "RED.png", "../tex/red.png", "../inside.png",
+                                   "../../scene/tex/red.png", "/home/somebody/red.png"}) {
+        const bake::FoundFile found = find(name);
+        ASSERT_TRUE(found.exists) << name;
+        EXPECT_TRUE(fs::equivalent(found.file, root_ / "tex/red.png")) << name;
+    }
+}
+
 }  // namespace

@@ -43,6 +43,7 @@ class RandomOptions {
             options.scene = text() + "x.obj";
             options.z_up = below(2) == 0;
             options.strict = below(2) == 0;
+            options.restricted = below(2) == 0;
         });
         options.size = {1 + below(20000), 1 + below(20000)};
         options.view = below(interop::kViewCount);
