@@ -147,7 +147,9 @@ void add_images(const GltfImages& images, GltfGeometry& geometry, ordered_json& 
     };
     for (std::size_t i = 0; i < images.images.size(); ++i) {
         const GltfImages::File& image = images.images[i];
-        root["textures"].push_back({{"sampler", sampler(image.clamp)}, {"source", i}});
+        // First: a member that is new moves the others, and with them what root["textures"] is.
+        const std::size_t of_image = sampler(image.clamp);
+        root["textures"].push_back({{"sampler", of_image}, {"source", i}});
         root["images"].push_back({{"name", image.name},
                                   {"bufferView", geometry.views.size()},
                                   {"mimeType", "image/png"}});
