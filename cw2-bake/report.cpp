@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace bake {
@@ -21,7 +22,9 @@ std::string position_error(const Document& document, const Counts& counts) {
     if (error == 0.0f) return "0";
     // Of a scene that is all but a point for floats, or of a forged file, anything.
     constexpr double kMostParts = 1e15;
-    const double parts = std::clamp(double{counts.extent} / double{error}, 0.0, kMostParts);
+    // Unlike std::clamp(), these take 0 for what is no number.
+    const double parts =
+        std::fmin(std::fmax(double{counts.extent} / double{error}, 0.0), kMostParts);
     return fmt::format("{:.2g} (1/{} of the extent)", error,
                        grouped(static_cast<std::uint64_t>(parts)));
 }
