@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Fuzzes one target (obj, gltf, mesh, images) that the preset sanitize built: replays its seeds, then
-# makes more of them for some seconds. Keeps what is new in CORPUS, if one is given, and takes it up
-# the next time. What breaks the target stays in BUILD/fuzz; as a seed it stays mended.
+# makes more of them for some seconds, without a CORPUS the same ones every time. Keeps what is new in
+# CORPUS, and takes it up the next time. What breaks the target stays in BUILD/fuzz; as a seed it stays mended.
 # Usage: run.sh BUILD TARGET SECONDS [CORPUS]
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -26,9 +26,11 @@ if [[ $target == mesh ]]; then
 else
     cp "$here/seeds/$target"/* "$work/seeds"
 fi
-dictionary=()
-[[ -f $here/$target.dict ]] && dictionary=(-dict="$here/$target.dict")
-TMPDIR=$work/scratch "$build/bin/fuzz_$target" "${dictionary[@]}" -max_total_time="$seconds" \
+options=()
+[[ -f $here/$target.dict ]] && options+=(-dict="$here/$target.dict")
+# A test tries the same every time; a search goes on where nobody was.
+[[ $# -ge 4 ]] || options+=(-seed=1)
+TMPDIR=$work/scratch "$build/bin/fuzz_$target" "${options[@]}" -max_total_time="$seconds" \
     -entropic=0 -timeout=100 -rss_limit_mb=3000 -malloc_limit_mb=1500 -max_len=20000 -print_final_stats=1 \
     -artifact_prefix="$build/fuzz/$target-" "$corpus" "$work/seeds" >"$work/log" 2>&1 || {
     tail -n 60 "$work/log"
