@@ -368,7 +368,7 @@ int render_headless(const Options& options) {
         const Clock::time_point start = Clock::now();
         SceneFile file = bake ? load_scene_file(bake->baked()) : loading.get();
         Timings timings{.load = milliseconds_since(start)};
-        const std::string text = render(device, options, std::move(file), std::move(timings));
+        const std::string text = render(device, options, std::move(file), timings);
         if (stats && !text.empty()) {
             stats->write(std::as_bytes(std::span(text)));
             stats->commit();
