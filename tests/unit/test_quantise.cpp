@@ -1,10 +1,12 @@
 // Packed vertices decode to what they were within the stated errors, and without cracks.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
 #include <random>
+#include <span>
 
 #include "cw2-bake/geometry/quantise.h"
 #include "mesh-format/tangent_frame.h"
@@ -162,7 +164,8 @@ TEST(Quantise, EqualPositionsDecodeToEqualBitsInEveryMesh) {
         const Decoded first = decode(packed, packed.meshes[0], 300 + i);
         for (const MeshRecord& mesh : packed.meshes) {
             const Decoded other = decode(packed, mesh, 300 + i);
-            EXPECT_EQ(0, std::memcmp(first.position, other.position, sizeof first.position));
+            EXPECT_TRUE(std::ranges::equal(std::as_bytes(std::span(first.position)),
+                                           std::as_bytes(std::span(other.position))));
         }
     }
 }

@@ -591,7 +591,7 @@ TEST(ReadObj, EndsInASoundSceneOrAnErrorHoweverAFileIsAltered) {
     };
     const std::string seed =
         random_obj(random, 6, 7) + "f 1 2 \\\n 3 4\ns off\r\nusemtl x y\rf 1 2 3";
-    const std::string odd("\\\n\r \t/-+.0123456789eEvtnfs#\0\xFFnaif", 34);
+    const std::string odd("\\\n\r \t/-+.0123456789eEvtnfs#\0\xFFnaif", 33);
     const TempFolder folder;
     folder.write("scene.mtl", "newmtl m1\nKd 1 0 0\n");
     int scenes = 0, errors = 0;
