@@ -41,8 +41,7 @@ TEST(FileList, NewFilesComeBehindTheCurrentOne) {
 TEST(PathField, CompletesAsFarAsAllFilesAgree) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder / "models");
-    std::ofstream(folder / "sponza.obj");
-    std::ofstream(folder / "sponge.obj");
+    for (const char* name : {"sponza.obj", "sponge.obj"}) const std::ofstream empty(folder / name);
     const auto in = [&](const char* name) { return (folder / name).string(); };
     EXPECT_EQ(cw2::completed_path(in("sp")), in("spon"));
     EXPECT_EQ(cw2::completed_path(in("sponz")), in("sponza.obj"));

@@ -41,7 +41,7 @@ class Panel : public testing::Test {
 
     std::vector<Command> frame() {
         ImGui::NewFrame();
-        const std::vector<Command> commands = draw_panel(facts_, state_);
+        std::vector<Command> commands = draw_panel(facts_, state_);
         ImGui::Render();
         return commands;
     }
