@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <span>
 #include <unordered_map>
 
@@ -328,6 +329,7 @@ struct Piece {
     std::size_t begin = 0;
     std::size_t end = 0;
     ObjChunk chunk;
+    std::exception_ptr error;
 };
 
 void parse_pieces(std::string_view text, std::size_t chunk_bytes, const ObjContext& context,
@@ -353,10 +355,15 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, const ObjConte
     };
     const auto parse = [&](Piece* piece) {
         piece->chunk.clear();
-        parse_obj_chunk(text, piece->begin, piece->end, context, piece->chunk);
+        try {
+            parse_obj_chunk(text, piece->begin, piece->end, context, piece->chunk);
+        } catch (...) {
+            piece->error = std::current_exception();  // a piece before it may have one, too
+        }
         return piece;
     };
     const auto take = [&](Piece* piece) {
+        if (piece->error) std::rethrow_exception(piece->error);
         assembly.append_chunk(piece->chunk, text.size() - piece->end);
         if (piece->end - released < kReleaseBytes && piece->end < text.size()) return;
         release(text, released, piece->end);
