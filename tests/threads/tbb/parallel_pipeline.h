@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -34,9 +35,14 @@ class Turns {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [&] { return next_ == item || failed_; });
         if (failed_) throw std::runtime_error("an earlier item failed");
+        // After one that throws no other has its turn: the rest wait until fail() is called.
         struct Done {
             Turns& turns;
-            ~Done() { ++turns.next_, turns.changed_.notify_all(); }
+            int before = std::uncaught_exceptions();
+            ~Done() {
+                if (std::uncaught_exceptions() == before) ++turns.next_;
+                turns.changed_.notify_all();
+            }
         } done{*this};
         return work();
     }
