@@ -179,12 +179,17 @@ std::filesystem::path file_of(const Options& options, std::uint32_t frame) {
     return frame_name(options.output->string(), frame).value_or(options.output->string());
 }
 
+/// Frame `frame` of `count` of a turn.
+FrameSettings turned(const Options& options, const FrameSettings& start, std::uint32_t frame,
+                     std::uint32_t count, const Bounds& bounds) {
+    return at_frame(start, options.orbit.value_or(Orbit::camera), frame, count, bounds,
+                    options.orbit_axis);
+}
+
 /// Of --bench, the frame of a picture.
 FrameSettings bench_frame(const Options& options, const FrameSettings& start, std::uint32_t picture,
                           const Bounds& bounds) {
-    if (!options.orbit) return start;
-    return at_frame(start, *options.orbit, picture, options.bench_pictures, bounds,
-                    options.orbit_axis);
+    return options.orbit ? turned(options, start, picture, options.bench_pictures, bounds) : start;
 }
 
 /// A scene on its device, and what draws it into files.
@@ -214,9 +219,7 @@ struct Studio {
         Saver saver(options.size, target.png());
         std::optional<FrameProgress> progress(range.size());
         for (std::uint32_t frame = range.first; frame <= range.last; ++frame) {
-            const FrameSettings now =
-                at_frame(settings, options.orbit.value_or(Orbit::camera), frame, range.count,
-                         scene.bounds(), options.orbit_axis);
+            const FrameSettings now = turned(options, settings, frame, range.count, scene.bounds());
             const Clock::time_point start = Clock::now();
             target.render(scene, now, [](std::uint32_t) {});
             if (frame == range.first) timings.first_frame = milliseconds_since(start);
@@ -289,21 +292,26 @@ void print_pixel(const Device& device, const Layouts& layouts, const Scene& scen
         json_of(pixel, pick, pick ? scene.material_names()[pick->material] : std::string()));
 }
 
-/// The cameras of all pictures of a run.
-std::vector<Camera> cameras_of(const Options& options, const FrameSettings& settings,
-                               const Bounds& bounds) {
-    std::vector<Camera> cameras{settings.camera};
-    if (options.frames) {
-        const FrameRange& range = *options.frames;
-        cameras.clear();
-        for (std::uint32_t frame = range.first; frame <= range.last; ++frame)
-            cameras.push_back(at_frame(settings, options.orbit.value_or(Orbit::camera), frame,
-                                       range.count, bounds, options.orbit_axis)
-                                  .camera);
-    }
-    for (std::uint32_t i = 0; options.orbit == Orbit::camera && i < options.bench_pictures; ++i)
-        cameras.push_back(bench_frame(options, settings, i, bounds).camera);
-    return cameras;
+/// The camera of all pictures of a run, nothing where it moves.
+std::optional<Camera> only_camera(const Options& options, const FrameSettings& settings,
+                                  const Bounds& bounds) {
+    const bool turns = options.frames
+                           ? options.frames->size() > 1 && options.orbit != Orbit::light
+                           : options.bench_pictures > 0 && options.orbit == Orbit::camera;
+    if (turns) return std::nullopt;
+    if (!options.frames) return settings.camera;
+    return turned(options, settings, options.frames->first, options.frames->count, bounds).camera;
+}
+
+/// From which levels on the pictures of a run need the textures; empty for all.
+std::vector<std::uint32_t> needed_levels(const Options& options, const FrameSettings& settings,
+                                         const TextureSettings& textures, const SceneFile& file) {
+    const std::optional<Camera> camera = only_camera(options, settings, file.bounds);
+    if (!camera) return {};
+    return first_touched_levels(file, *camera,
+                                {.extent = {options.size.width, options.size.height},
+                                 .lod_bias = pixel_sample(0, samples_of(options)).lod_bias,
+                                 .anisotropy = textures.anisotropy});
 }
 
 /// Returns the statistics of what was drawn, empty for nothing.
@@ -314,11 +322,7 @@ std::string render(const Device& device, const Options& options, SceneFile file,
     const FrameSettings settings = settings_for(kind, options, file.start, file.bounds);
     const TextureSettings textures = texture_settings(options, device);
     const Layouts layouts(device);
-    Scene scene(device, layouts, file, textures,
-                first_touched_levels(file, cameras_of(options, settings, file.bounds),
-                                     {.extent = {options.size.width, options.size.height},
-                                      .lod_bias = pixel_sample(0, samples_of(options)).lod_bias,
-                                      .anisotropy = textures.anisotropy}));
+    Scene scene(device, layouts, file, textures, needed_levels(options, settings, textures, file));
     std::optional<OffscreenTarget> target;
     std::future<void> rehearsal;
     const bool draws = kind || options.bench_pictures > 0;

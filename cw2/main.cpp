@@ -31,16 +31,16 @@ int run(const cw2::Options& options) {
         common::print(text);
         return 0;
     }
-    // A scene that is none is told before a device or a display is missed.
-    if (!options.list_devices) const common::MappedFile exists(options.scene);
-    if (!options.list_devices && !options.output && !options.pixel && options.bench_pictures == 0) {
-        return cw2::run_window(options, common::beside_program("../share/cw2"));
+    if (options.list_devices) {
+        const cw2::Instance instance(options.validation, {});
+        for (const std::string& line : cw2::describe_devices(instance)) common::print(line + '\n');
+        return instance.validation_messages() == 0 ? 0 : 1;
     }
-
-    if (!options.list_devices) return cw2::render_headless(options);
-    const cw2::Instance instance(options.validation, {});
-    for (const std::string& line : cw2::describe_devices(instance)) common::print(line + '\n');
-    return instance.validation_messages() == 0 ? 0 : 1;
+    // A scene that is none is told before a device or a display is missed.
+    const common::MappedFile exists(options.scene);
+    if (options.output || options.pixel || options.bench_pictures > 0)
+        return cw2::render_headless(options);
+    return cw2::run_window(options, common::beside_program("../share/cw2"));
 }
 
 }  // namespace

@@ -25,6 +25,7 @@
 #include "common/io.h"
 #include "common/program.h"
 #include "common/signals.h"
+#include "cw2/options/frame_of.h"
 #include "mesh-format/file.h"
 
 namespace cw2 {
@@ -369,7 +370,7 @@ std::unique_ptr<SourceBake> bake_of(const Options& options, const Device& device
     const BakeSettings settings{.z_up = options.z_up,
                                 .strict = options.strict,
                                 .restricted = options.restricted,
-                                .uncompressed = device.is_cpu() || !device.samples_blocks()};
+                                .uncompressed = texture_settings(options, device).decode_blocks};
     return std::make_unique<SourceBake>(options.scene, settings, std::move(tell));
 }
 

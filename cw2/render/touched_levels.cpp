@@ -14,6 +14,8 @@
 #include <glm/mat4x4.hpp>
 #include <limits>
 
+#include "cw2/render/visibility.h"
+
 namespace cw2 {
 
 namespace {
@@ -31,37 +33,32 @@ struct Polygon {
     std::size_t count;
 };
 
-/// A camera's pictures. Positions are seen from it: x, y, and the distance along its direction.
+/// A camera's picture. Positions are seen from it: x, y, and the distance along its direction.
 struct Lens {
     glm::mat4 view;
-    float near;
     float focal;       ///< pixels
     glm::vec2 slopes;  ///< of the borders of the picture, a little beyond
+    FrustumPlanes planes;
 
     Lens(const Camera& camera, const Bounds& bounds, VkExtent2D extent)
-        : view(view_from_world(camera)), near(near_distance(bounds)) {
+        : view(view_from_world(camera)) {
         focal = 0.5f * static_cast<float>(extent.height) / std::tan(0.5f * camera.vertical_fov);
         // Two pixels more: samples lie anywhere in a pixel, and derivatives are of pairs of them.
         slopes = (0.5f * glm::vec2(extent.width, extent.height) + 2.0f) / focal;
+        planes = frustum_planes(
+            clip_from_view(2.0f * std::atan(slopes.y), slopes.x / slopes.y, near_distance(bounds)));
+        for (glm::vec4& plane : planes) plane.z = -plane.z;
     }
     glm::vec3 seen(const glm::vec3& position) const {
         const glm::vec4 p = view * glm::vec4(position, 1.0f);
         return {p.x, p.y, -p.z};
     }
     bool shows(const glm::vec3& center, float radius) const {
-        const glm::vec3 p = seen(center);
-        const glm::vec2 reach = radius * glm::sqrt(1.0f + slopes * slopes);
-        return p.z + radius >= near && std::abs(p.x) <= slopes.x * p.z + reach.x &&
-               std::abs(p.y) <= slopes.y * p.z + reach.y;
+        return !is_outside(planes, seen(center), radius);
     }
     /// Sutherland and Hodgman 1974.
     Polygon shown(const std::array<glm::vec3, 3>& triangle) const {
         Polygon polygon{{triangle[0], triangle[1], triangle[2]}, 3};
-        const glm::vec4 planes[] = {{0, 0, 1, -near},
-                                    {1, 0, slopes.x, 0},
-                                    {-1, 0, slopes.x, 0},
-                                    {0, 1, slopes.y, 0},
-                                    {0, -1, slopes.y, 0}};
         for (const glm::vec4& plane : planes) {
             const Polygon whole = polygon;
             polygon.count = 0;
@@ -123,7 +120,8 @@ float least_step(const Lens& lens, const std::array<glm::vec3, 3>& seen,
     const glm::vec3 normal = glm::cross(a, b);
     const float plane = std::abs(glm::dot(normal, seen[0]));
     if (!(plane > 0.0f)) return kNever;  // seen from its edge
-    LeastDerivative u(ub.x * a - ua.x * b), v(ub.y * a - ua.y * b);
+    const glm::vec3 ku = ub.x * a - ua.x * b, kv = ub.y * a - ua.y * b;
+    LeastDerivative u(ku), v(kv);
     float nearest = kNever;
     for (std::size_t i = 0; i < shown.count; ++i) {
         nearest = std::min(nearest, shown.corners[i].z);
@@ -136,7 +134,6 @@ float least_step(const Lens& lens, const std::array<glm::vec3, 3>& seen,
     // A step of a pixel at distance z goes at least z / (focal sqrt(1 + slope^2)) along a surface.
     // The Frobenius norm of a product is at least that of one factor times the least singular value
     // of the other; the largest of four derivatives is at least half of it.
-    const glm::vec3 ku = ub.x * a - ua.x * b, kv = ub.y * a - ua.y * b;
     const float by_distance =
         0.5f * nearest *
         std::sqrt((glm::dot(ku, ku) + glm::dot(kv, kv)) /
@@ -193,21 +190,16 @@ std::vector<float> least_steps(const SceneFile& file, const Lens& lens) {
         meshes.push_back({&mesh, positions});
         positions += mesh.vertex_count;
     }
-    std::vector<const Mesh*> mesh_of_chunk(document.chunks.size(), nullptr);
-    for (const Mesh& mesh : meshes) {
-        std::fill_n(mesh_of_chunk.begin() + mesh.record->first_chunk, mesh.record->chunk_count,
-                    &mesh);
-    }
-    std::vector<float> of_chunk(document.chunks.size(), kNever);
-    tbb::parallel_for(std::size_t{0}, of_chunk.size(), [&](std::size_t i) {
-        if (mesh_of_chunk[i])
-            of_chunk[i] = least_step(document, *mesh_of_chunk[i], document.chunks[i], lens);
+    std::vector<float> of_mesh(meshes.size(), kNever);
+    tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
+        const MeshRecord& mesh = *meshes[i].record;
+        for (const ChunkRecord& chunk : document.chunks.subspan(mesh.first_chunk, mesh.chunk_count))
+            of_mesh[i] = std::min(of_mesh[i], least_step(document, meshes[i], chunk, lens));
     });
     std::vector<float> of_material(document.materials.size(), kNever);
-    for (std::size_t i = 0; i < of_chunk.size(); ++i) {
-        if (!mesh_of_chunk[i]) continue;
-        float& least = of_material[mesh_of_chunk[i]->record->material];
-        least = std::min(least, of_chunk[i]);
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        float& least = of_material[meshes[i].record->material];
+        least = std::min(least, of_mesh[i]);
     }
     return of_material;
 }
@@ -219,19 +211,15 @@ std::uint32_t halvings(std::uint32_t size) {
 
 }  // namespace
 
-std::vector<std::uint32_t> first_touched_levels(const SceneFile& file,
-                                                std::span<const Camera> cameras,
+std::vector<std::uint32_t> first_touched_levels(const SceneFile& file, const Camera& camera,
                                                 const PictureSampling& sampling) {
     const Document& document = file.document;
+    const std::vector<float> steps = least_steps(file, Lens(camera, file.bounds, sampling.extent));
     // Of each texture, in parts of it.
     std::vector<float> least(document.textures.size(), kNever);
-    for (const Camera& camera : cameras) {
-        const Lens lens(camera, file.bounds, sampling.extent);
-        const std::vector<float> steps = least_steps(file, lens);
-        for (std::size_t i = 0; i < steps.size(); ++i) {
-            for (const std::uint32_t texture : document.materials[i].textures.values) {
-                if (texture != kNoTexture) least[texture] = std::min(least[texture], steps[i]);
-            }
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        for (const std::uint32_t texture : document.materials[i].textures.values) {
+            if (texture != kNoTexture) least[texture] = std::min(least[texture], steps[i]);
         }
     }
     std::vector<std::uint32_t> first;

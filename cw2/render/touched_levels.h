@@ -4,7 +4,6 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "cw2/render/camera.h"
@@ -12,18 +11,17 @@
 
 namespace cw2 {
 
-/// How pictures are sampled.
+/// How a picture is sampled.
 struct PictureSampling {
     VkExtent2D extent;
     float lod_bias;    ///< added to the level of detail, at most 0
     float anisotropy;  ///< the samplers' largest ratio, at least 1
 };
 
-/// The first level of each texture that pictures from these cameras may touch, never one of the
-/// last two; levels of which the first is no whole multiple are kept. A bound: with less, the same
+/// The first level of each texture that a picture from this camera may touch, never one of the last
+/// two; levels of which the first is no whole multiple are kept. A bound: with less, the same
 /// picture. Takes 10 ms for a million triangles.
-std::vector<std::uint32_t> first_touched_levels(const SceneFile& file,
-                                                std::span<const Camera> cameras,
+std::vector<std::uint32_t> first_touched_levels(const SceneFile& file, const Camera& camera,
                                                 const PictureSampling& sampling);
 
 }  // namespace cw2

@@ -1,7 +1,6 @@
 #include "cw2/render/visibility.h"
 
 #include <algorithm>
-#include <array>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_access.hpp>
 #include <tuple>
@@ -9,19 +8,6 @@
 namespace cw2 {
 
 namespace {
-
-/// Left, right, bottom, top and near plane, pointing inwards, normalised: a point's distance from
-/// a plane is dot(plane, (point, 1)). Gribb and Hartmann 2001.
-std::array<glm::vec4, 5> frustum_planes(const glm::mat4& clip_from_world) {
-    const glm::vec4 x = glm::row(clip_from_world, 0);
-    const glm::vec4 y = glm::row(clip_from_world, 1);
-    const glm::vec4 z = glm::row(clip_from_world, 2);
-    const glm::vec4 w = glm::row(clip_from_world, 3);
-    // Reversed depth: the near plane is z = w.
-    std::array planes{w + x, w - x, w + y, w - y, w - z};
-    for (glm::vec4& plane : planes) plane /= glm::length(glm::vec3(plane));
-    return planes;
-}
 
 bool faces_away(const SceneChunk& chunk, const glm::vec3& camera_position) {
     const glm::vec3 to_center = chunk.center - camera_position;
@@ -31,19 +17,36 @@ bool faces_away(const SceneChunk& chunk, const glm::vec3& camera_position) {
 
 }  // namespace
 
+// Gribb and Hartmann 2001.
+FrustumPlanes frustum_planes(const glm::mat4& clip) {
+    const glm::vec4 x = glm::row(clip, 0);
+    const glm::vec4 y = glm::row(clip, 1);
+    const glm::vec4 z = glm::row(clip, 2);
+    const glm::vec4 w = glm::row(clip, 3);
+    // Reversed depth: the near plane is z = w.
+    FrustumPlanes planes{w + x, w - x, w + y, w - y, w - z};
+    for (glm::vec4& plane : planes) plane /= glm::length(glm::vec3(plane));
+    return planes;
+}
+
+bool is_outside(const FrustumPlanes& planes, const glm::vec3& center, float radius) {
+    return std::ranges::any_of(planes, [&](const glm::vec4& plane) {
+        return glm::dot(glm::vec3(plane), center) + plane.w < -radius;
+    });
+}
+
 void find_visible(std::span<const SceneChunk> chunks, std::span<const Draw> draws,
                   const glm::mat4& clip_from_world, const glm::vec3& camera_position,
                   std::vector<std::uint32_t>& visible) {
     using Rank = std::tuple<Shading, float, std::uint32_t>;
-    const std::array<glm::vec4, 5> planes = frustum_planes(clip_from_world);
+    const FrustumPlanes planes = frustum_planes(clip_from_world);
     std::vector<Rank> ranks;
     for (std::uint32_t i = 0; i < chunks.size(); ++i) {
         const SceneChunk& chunk = chunks[i];
         const Draw& draw = draws[chunk.draw];
-        const bool outside = std::any_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
-            return glm::dot(glm::vec3(plane), chunk.center) + plane.w < -chunk.radius;
-        });
-        if (outside || (draw.cull_back && faces_away(chunk, camera_position))) continue;
+        if (is_outside(planes, chunk.center, chunk.radius) ||
+            (draw.cull_back && faces_away(chunk, camera_position)))
+            continue;
         // By the farthest point: near parts of large walls may hide nothing of what is before the
         // rest of them. Measured in Sponza: 1.6 fragments a pixel, by the nearest point 4.0.
         ranks.emplace_back(draw.shading,

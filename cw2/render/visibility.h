@@ -1,15 +1,24 @@
 // Which chunks of a scene a camera may see, and in which order to draw them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <span>
 #include <vector>
 
 #include "cw2/render/scene.h"
 
 namespace cw2 {
+
+/// Left, right, bottom, top and near plane, pointing inwards, normalised: a point's distance from
+/// a plane is dot(plane, (point, 1)).
+using FrustumPlanes = std::array<glm::vec4, 5>;
+/// Of what `clip` makes clip space of, with reversed depth.
+FrustumPlanes frustum_planes(const glm::mat4& clip);
+bool is_outside(const FrustumPlanes& planes, const glm::vec3& center, float radius);
 
 /// Writes to `visible` the indices of the chunks whose spheres meet the frustum and, where back
 /// faces are culled, whose normal cones do not all look away: opaque chunks before alpha-masked

@@ -318,7 +318,7 @@ TEST(TouchedLevels, GiveTheSamePictureAsAll) {
             Frames all(scene, words);
             const std::vector<float> truth = all.mean(count, false);
             std::vector<std::uint32_t> first = cw2::first_touched_levels(
-                file, {&all.settings().camera, 1},
+                file, all.settings().camera,
                 {{kWidth, kHeight}, cw2::pixel_sample(0, count).lod_bias, 1.0f});
             // The level between two levels is rounded when it is computed.
             EXPECT_LE(farthest(Frames(scene, words, first).mean(count, false), truth), 1e-6f)
