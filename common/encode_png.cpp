@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <future>
+#include <new>
+#include <stdexcept>
 #include <string_view>
-
-#include "common/io.h"
 
 namespace common {
 
@@ -118,7 +118,7 @@ Strip compress(const Bytes& filtered, bool is_last) {
     // Runs alone: a third of the time of a search for matches, and as small for pictures.
     z_stream stream{};
     if (::deflateInit2(&stream, 1, Z_DEFLATED, -MAX_WBITS, 9, Z_RLE) != Z_OK)
-        throw FileError("PNG encoder: out of memory");
+        throw std::bad_alloc();
     Strip strip;
     strip.stream.resize(::deflateBound(&stream, static_cast<uLong>(filtered.size())) + 16);
     const auto* const in = reinterpret_cast<const Bytef*>(filtered.data());
@@ -129,7 +129,8 @@ Strip compress(const Bytes& filtered, bool is_last) {
     const int result = ::deflate(&stream, is_last ? Z_FINISH : Z_SYNC_FLUSH);
     strip.stream.resize(stream.total_out);
     ::deflateEnd(&stream);
-    if (result != (is_last ? Z_STREAM_END : Z_OK)) throw FileError("PNG encoder: zlib failed");
+    if (result != (is_last ? Z_STREAM_END : Z_OK))
+        throw std::runtime_error("PNG encoder: zlib failed");
     strip.adler = ::adler32(1, in, static_cast<uInt>(filtered.size()));
     strip.filtered_bytes = filtered.size();
     return strip;
@@ -143,11 +144,11 @@ std::vector<Strip> strips_of(const PngPicture& picture, const Layout& layout) {
     for (std::size_t i = 0; i < count; ++i) {
         const auto begin = static_cast<std::uint32_t>(picture.height * i / count);
         const auto end = static_cast<std::uint32_t>(picture.height * (i + 1) / count);
-        pending.push_back(std::async(count > 1 ? std::launch::async : std::launch::deferred,
-                                     [&picture, &layout, begin, end] {
-                                         return compress(filtered(picture, layout, begin, end),
-                                                         end == picture.height);
-                                     }));
+        pending.push_back(std::async(
+            picture.on_threads ? std::launch::async : std::launch::deferred,
+            [&picture, &layout, begin, end] {
+                return compress(filtered(picture, layout, begin, end), end == picture.height);
+            }));
     }
     std::vector<Strip> strips;
     for (std::future<Strip>& strip : pending) strips.push_back(strip.get());

@@ -23,9 +23,10 @@ struct PngPicture {
     Channels channels;
     bool says_srgb;                     ///< the file tells programs that show it that it is sRGB
     std::span<const std::byte> texels;  ///< rows from the top, tightly packed
+    bool on_threads = false;            ///< encoded on threads of its own; the same bytes
 };
 
-/// The same picture gives the same bytes. Throws FileError.
+/// The same picture gives the same bytes.
 std::vector<std::byte> encode_png(const PngPicture& picture);
 
 }  // namespace common

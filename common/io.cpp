@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cerrno>
 #include <cstdio>
 #include <memory>
@@ -107,7 +106,7 @@ void each_shown(std::string_view text, Put&& put) {
 }
 
 // Temporary files are named as their target, this, and some of these.
-constexpr std::string_view kMark = ".cw2-";
+constexpr std::string_view kMark = ".cw2-tmp-";  // which no user's own file has
 constexpr std::size_t kSuffixLength = 6;
 constexpr std::size_t kLongestName = 255;  // of a file, as Linux has it
 constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyz0123456789";
@@ -225,15 +224,12 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
     return *this;
 }
 
-void MappedFile::forget(std::span<const std::byte> part) const {
-    static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-    // The mapping starts at a page; those at the ends of the part belong to others, too.
-    const auto begin = static_cast<std::size_t>(part.data() - bytes_.data());
-    assert(begin + part.size() <= bytes_.size());
-    const std::size_t first = (begin + page - 1) / page * page;
-    const std::size_t end = (begin + part.size()) / page * page;
-    if (first >= end) return;
-    ::madvise(const_cast<std::byte*>(bytes_.data()) + first, end - first, MADV_DONTNEED);
+void forget_mapped(std::span<const std::byte> part) {
+    static const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+    const auto begin = reinterpret_cast<std::uintptr_t>(part.data());
+    const std::uintptr_t first = (begin + page - 1) / page * page;
+    const std::uintptr_t end = (begin + part.size()) / page * page;
+    if (first < end) ::madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
 }
 
 void MappedFile::require_unchanged() const {
@@ -313,12 +309,14 @@ void OutputFile::keep_mode_and_owner() const {
     if (::stat(target_.c_str(), &old) != 0) return;
     struct stat own {};
     bool ok = ::fstat(descriptor_, &own) == 0;
-    // Only root may give files away, but everybody may to a group of theirs.
-    if (own.st_gid != old.st_gid) [[maybe_unused]]
-        const int refused = ::fchown(descriptor_, static_cast<uid_t>(-1), old.st_gid);
+    mode_t mode = old.st_mode & 0777;
+    // Only root may give files away, but everybody may to a group of theirs. What another group
+    // might do ours may not.
+    if (own.st_gid != old.st_gid && ::fchown(descriptor_, static_cast<uid_t>(-1), old.st_gid) != 0)
+        mode &= ~mode_t{070};
     if (own.st_uid != old.st_uid) [[maybe_unused]]
         const int refused = ::fchown(descriptor_, old.st_uid, static_cast<gid_t>(-1));
-    ok = ok && ::fchmod(descriptor_, old.st_mode & 0777) == 0;
+    ok = ok && ::fchmod(descriptor_, mode) == 0;
     if (!ok) fail_errno(name_, "cannot be written");
 }
 
@@ -333,6 +331,12 @@ void OutputFile::commit() {
     if (::close(std::exchange(descriptor_, -1)) != 0 && is_stream()) {
         fail_errno(name_, "cannot be written");
     }
+}
+
+void write_file(const std::filesystem::path& target, std::span<const std::byte> bytes) {
+    OutputFile file(target);
+    file.write(bytes);
+    file.commit();
 }
 
 }  // namespace common

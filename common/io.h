@@ -48,8 +48,6 @@ class MappedFile {
     MappedFile& operator=(MappedFile&& other) noexcept;
 
     std::span<const std::byte> bytes() const { return bytes_; }
-    /// Lets go of the memory of a part, which is read anew if somebody needs it.
-    void forget(std::span<const std::byte> part) const;
     /// Throws FileError if somebody has written to the file since it was mapped: then what was read
     /// may be partly what it was, partly what it has become.
     void require_unchanged() const;
@@ -60,6 +58,10 @@ class MappedFile {
     std::int64_t changed_ = 0;  ///< when, in nanoseconds
     std::span<const std::byte> bytes_;
 };
+
+/// Lets go of the memory of a part of a MappedFile's bytes, but for pages that it shares with what
+/// is beside it; it is read anew if somebody needs it.
+void forget_mapped(std::span<const std::byte> part);
 
 /// A file that is written beside its target and takes its place on commit(), with the mode and, as
 /// far as that is permitted, the owner of what was there; destroyed without commit() it leaves no
@@ -89,5 +91,8 @@ class OutputFile {
     std::string temporary_;
     int descriptor_ = -1;
 };
+
+/// An OutputFile of these bytes alone.
+void write_file(const std::filesystem::path& target, std::span<const std::byte> bytes);
 
 }  // namespace common

@@ -11,15 +11,14 @@ namespace common {
 
 namespace {
 
-constexpr auto kPatience = std::chrono::seconds(1);
 constexpr auto kInterval = std::chrono::milliseconds(100);
 constexpr int kBarWidth = 30;
 constexpr std::size_t kLabelWidth = 40;
 
 }  // namespace
 
-ProgressBar::ProgressBar(bool enabled)
-    : enabled_(enabled && ::isatty(STDERR_FILENO) != 0), next_draw_(Clock::now() + kPatience) {}
+ProgressBar::ProgressBar(bool enabled, std::chrono::milliseconds patience)
+    : enabled_(enabled && ::isatty(STDERR_FILENO) != 0), next_draw_(Clock::now() + patience) {}
 
 ProgressBar::~ProgressBar() {
     erase();

@@ -6,12 +6,13 @@
 
 namespace common {
 
-/// Draws a bar on standard error once the work has taken a second, if that is a terminal; erases
+/// Draws a bar on standard error once the work has taken a while, if that is a terminal; erases
 /// it when destroyed.
 class ProgressBar {
  public:
-    /// With `enabled` false nothing is ever drawn.
-    explicit ProgressBar(bool enabled);
+    /// With `enabled` false nothing is ever drawn, else after `patience`.
+    explicit ProgressBar(bool enabled,
+                         std::chrono::milliseconds patience = std::chrono::seconds(1));
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;

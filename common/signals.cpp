@@ -96,11 +96,13 @@ void on_bus_error(int signal, siginfo_t* info, void*) {
 
 /// Libraries that cannot make a thread throw where nobody can catch it.
 void on_terminate() {
+    const std::exception_ptr thrown = std::current_exception();
+    if (!thrown) std::abort();
     try {
-        std::rethrow_exception(std::current_exception());
+        std::rethrow_exception(thrown);
     } catch (const std::exception& error) {
-        acquire();
-        remove_all();
+        const Lock lock;
+        if (::getpid() == owner) remove_all();
         tell(program_name, error.what());
         ::_exit(1);
     } catch (...) {

@@ -233,9 +233,7 @@ std::uint64_t write_baked(const mesh_format::Document& document,
 
 void write_stats(const Settings& settings, const BakeStats& stats) {
     const std::string json = to_json(stats, std::filesystem::file_size(settings.input));
-    common::OutputFile file(*settings.stats);
-    file.write(std::as_bytes(std::span(json)));
-    file.commit();
+    common::write_file(*settings.stats, std::as_bytes(std::span(json)));
 }
 
 /// The geometry stays one scene from stage to stage, and no stage copies attributes: welding makes

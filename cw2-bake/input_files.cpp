@@ -32,7 +32,8 @@ std::optional<fs::path> place_of(const fs::path& path) {
 
 bool is_same_file(const fs::path& a, const fs::path& b) {
     std::error_code error;
-    if (fs::equivalent(a, b, error)) return true;
+    const bool same = fs::equivalent(a, b, error);
+    if (same || !error) return same;
     const std::optional<fs::path> place = place_of(a);
     return place && place == place_of(b);
 }
@@ -162,9 +163,7 @@ std::string depfile_text(const fs::path& output, const std::vector<fs::path>& in
 }
 
 void write_depfile(const fs::path& depfile, const std::string& text) {
-    common::OutputFile file(depfile);
-    file.write(std::as_bytes(std::span(text)));
-    file.commit();
+    common::write_file(depfile, std::as_bytes(std::span(text)));
 }
 
 }  // namespace bake

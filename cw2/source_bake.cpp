@@ -329,9 +329,8 @@ void SourceBake::note_sources() {
     }
     notes += '\n';
     for (const std::string& line : lines_) notes += line + '\n';
-    common::OutputFile file(fs::path(baked_).replace_extension("notes"));
-    file.write(std::as_bytes(std::span(notes)));
-    file.commit();
+    common::write_file(fs::path(baked_).replace_extension("notes"),
+                       std::as_bytes(std::span(notes)));
 }
 
 void SourceBake::remove_old_entries() const {

@@ -17,6 +17,7 @@ namespace mesh_format {
 /// three. Where b and c are the same, that is a.
 struct Neighbours {
     std::uint16_t a, b, c;
+    bool operator==(const Neighbours&) const = default;
 };
 
 /// The neighbours of `vertex_count` vertices, at most kMaxMeshVertices, of which the triangles are

@@ -43,9 +43,7 @@ cw2\-bake model.cw2mesh \-o model.glb
 
 void write(const std::filesystem::path& path, std::string_view text) {
     std::filesystem::create_directories(path.parent_path());
-    common::OutputFile file(path);
-    file.write(std::as_bytes(std::span(text)));
-    file.commit();
+    common::write_file(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace

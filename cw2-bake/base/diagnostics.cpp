@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <string_view>
 
 namespace bake {
@@ -9,11 +10,22 @@ namespace {
 
 constexpr std::size_t kPassedOn = 10;
 
+bool is_in_word(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Without digits, and without what is quoted; an apostrophe within a word is no quote.
 std::string kind_of(std::string_view warning) {
+    warning = warning.substr(0, warning.find("; "));
     std::string kind;
     bool in_quotes = false;
-    for (const char c : warning.substr(0, warning.find("; "))) {
-        if (c == '\'') in_quotes = !in_quotes;
+    for (std::size_t i = 0; i < warning.size(); ++i) {
+        const char c = warning[i];
+        if (c == '\'') {
+            const bool opens = i == 0 || warning[i - 1] == ' ' || warning[i - 1] == '(';
+            const bool closes = i + 1 == warning.size() || !is_in_word(warning[i + 1]);
+            if (in_quotes ? closes : opens) in_quotes = !in_quotes;
+        }
         if (!in_quotes && (c < '0' || c > '9')) kind += c;
     }
     const std::size_t place = kind.rfind(": ");

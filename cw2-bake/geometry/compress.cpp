@@ -37,8 +37,9 @@ Bytes zstd_frame(std::span<const std::byte> stream, std::size_t first, std::size
     for (std::size_t size = first; !stream.empty(); size = next) {
         ZSTD_inBuffer in{stream.data(), size, 0};
         const bool is_last = size == stream.size();
-        [[maybe_unused]] const std::size_t left =
+        const std::size_t left =
             ZSTD_compressStream2(context.get(), &out, &in, is_last ? ZSTD_e_end : ZSTD_e_flush);
+        if (ZSTD_isError(left)) throw std::bad_alloc();  // it has no other cause here
         assert(left == 0);
         stream = stream.subspan(size);
     }

@@ -203,9 +203,7 @@ std::uint64_t write_glb(std::string json, std::span<const std::byte> binary,
 }
 
 std::uint64_t write_text(const std::string& json, const std::filesystem::path& path) {
-    common::OutputFile file(path);
-    file.write(std::as_bytes(std::span(json)));
-    file.commit();
+    common::write_file(path, std::as_bytes(std::span(json)));
     return json.size();
 }
 

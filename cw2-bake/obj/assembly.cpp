@@ -1,10 +1,8 @@
 #include "cw2-bake/obj/assembly.h"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "common/io.h"
 #include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/base/raw_vector.h"
 #include "cw2-bake/base/text_lines.h"
@@ -311,17 +310,6 @@ ObjContents Assembly::finish() && {
     return std::move(contents_);
 }
 
-/// Gives back the memory of text[begin, end), of which nothing will be read soon, save for the page
-/// that the text after it shares.
-void release(std::string_view text, std::size_t begin, std::size_t end) {
-    static const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-    const auto page_of = [&](std::size_t offset) {
-        return reinterpret_cast<std::uintptr_t>(text.data() + offset) / page * page;
-    };
-    const std::uintptr_t size = page_of(end) - page_of(begin);
-    if (size > 0) madvise(reinterpret_cast<void*>(page_of(begin)), size, MADV_DONTNEED);
-}
-
 /// How much text is released in one go: each time interrupts the other threads.
 constexpr std::size_t kReleaseBytes = 1 << 20;
 
@@ -366,7 +354,8 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, const ObjConte
         if (piece->error) std::rethrow_exception(piece->error);
         assembly.append_chunk(piece->chunk, text.size() - piece->end);
         if (piece->end - released < kReleaseBytes && piece->end < text.size()) return;
-        release(text, released, piece->end);
+        common::forget_mapped(
+            std::as_bytes(std::span(text)).subspan(released, piece->end - released));
         released = piece->end;
     };
     using tbb::filter_mode;

@@ -187,9 +187,7 @@ void write_config(const std::filesystem::path& path, const Options& options) {
         const std::string value = setting.write(options);
         if (!value.empty()) text += setting.name + " = " + value + '\n';
     }
-    common::OutputFile file(path);
-    file.write(std::as_bytes(std::span(text)));
-    file.commit();
+    common::write_file(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace cw2

@@ -81,7 +81,8 @@ void write_image(const std::filesystem::path& path, std::uint32_t width, std::ui
                                       .channels = png.alpha ? PngPicture::Channels::rgba
                                                             : PngPicture::Channels::rgb_of_rgba,
                                       .says_srgb = png.srgb,
-                                      .texels = pixels})
+                                      .texels = pixels,
+                                      .on_threads = true})
                 : encode_exr(width, height, pixels));
     } catch (const common::FileError&) {
         throw;

@@ -26,7 +26,7 @@ struct SceneFile {
 
     /// The payload of a texture is not needed for now.
     void forget(const mesh_format::TextureRecord& texture) const {
-        if (mapped) mapped->forget(document.payload(texture));
+        if (mapped) common::forget_mapped(document.payload(texture));
     }
 };
 

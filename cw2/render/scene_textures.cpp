@@ -32,9 +32,14 @@ std::size_t white_for(MapUse use) {
             return 0;
         case MapUse::normal:
             return 2;
-        default:
+        case MapUse::roughness:
+        case MapUse::metalness:
+        case MapUse::alpha_mask:
             return 1;
+        case MapUse::count:
+            break;
     }
+    return 0;
 }
 
 VkFormat vulkan_format(TextureFormat format, bool decoded) {

@@ -172,7 +172,7 @@ TEST_F(Outputs, SignalsLeaveNoTemporaryFiles) {
     const auto before = names();
     const auto is_at_work = [this] {
         return std::ranges::any_of(names(), [](const std::string& name) {
-            return name.find(".json.cw2-") != std::string::npos;
+            return name.find(".json.cw2-tmp-") != std::string::npos;
         });
     };
     fs::create_directory(here("turn"));
@@ -229,7 +229,8 @@ TEST_F(Outputs, ATruncatedInputIsAnErrorAtAnyTime) {
         if (outcome.status == 1) {
             EXPECT_NE(outcome.err.find(input), std::string::npos) << outcome.err;
         }
-        for (const std::string& name : names()) EXPECT_EQ(name.find(".cw2-"), std::string::npos);
+        for (const std::string& name : names())
+            EXPECT_EQ(name.find(".cw2-tmp-"), std::string::npos);
     }
 }
 

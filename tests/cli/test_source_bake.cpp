@@ -208,9 +208,9 @@ TEST_F(SourceBake, SignalsLeaveNoTemporaryBake) {
 TEST_F(SourceBake, WhatAKilledBakeLeavesInTheCacheGoes) {
     const fs::path folder = fs::path(cache_) / "cw2";
     fs::create_directories(folder);
-    write("cache/cw2/0123456789abcdef.cw2mesh.cw2-x1y2z3", "half a bake");
+    write("cache/cw2/0123456789abcdef.cw2mesh.cw2-tmp-x1y2z3", "half a bake");
     draw_well("scene.obj", "a.png");
-    EXPECT_FALSE(fs::exists(folder / "0123456789abcdef.cw2mesh.cw2-x1y2z3"));
+    EXPECT_FALSE(fs::exists(folder / "0123456789abcdef.cw2mesh.cw2-tmp-x1y2z3"));
 }
 
 TEST_F(SourceBake, WarningsStandInLinesOfTheirOwn) {
@@ -228,8 +228,8 @@ TEST_F(SourceBake, WarningsStandInLinesOfTheirOwn) {
     const std::size_t at = shown.find("cw2-bake: warning: ");
     ASSERT_NE(at, std::string::npos) << shown;
     const std::string before = shown.substr(0, at);
-    if (before.find('[') == std::string::npos) GTEST_SKIP() << "too fast for a bar";
-    EXPECT_TRUE(before.ends_with("\r\033[K")) << shown;
+    // A fast machine has shown no bar yet; ProgressBar's own test waits for none.
+    EXPECT_TRUE(before.empty() || before.ends_with("\r\033[K")) << shown;
 }
 
 TEST_F(SourceBake, AMissingBakerIsNamed) {

@@ -35,6 +35,17 @@ TEST(WarningFilter, TenOfAKindAreToldAndTheOthersCounted) {
     EXPECT_EQ(lines.back(), eleventh + " (and 1000 more of this kind)");
 }
 
+TEST(WarningFilter, AnApostropheInAWordQuotesNothing) {
+    std::vector<std::string> different;
+    for (const char* odd : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l"})
+        different.push_back(std::string("/home/o'brien/a.obj:3: ") + odd + " is odd");
+    EXPECT_EQ(told(different), different);
+    std::vector<std::string> same;
+    for (char c = 'a'; c <= 'z'; ++c)
+        same.push_back(std::string("/home/o'brien/a.obj:3: no texture 'it's ") + c + ".png' here");
+    EXPECT_EQ(told(same).size(), 11u);
+}
+
 TEST(LineCounter, TellsWhatCountingFromTheStartTells) {
     const std::string text = "a\nb\r\nc\rd\n\n\r\n\re";
     for (std::size_t first = 0; first <= text.size() + 1; ++first) {

@@ -63,7 +63,7 @@ TEST_F(Io, WhatIsForgottenOfAFileIsReadAnew) {
                                       {4'096, 4'096},
                                       {10, 20},
                                       {99'999, 1}}) {
-        file.forget(file.bytes().subspan(begin, size));
+        common::forget_mapped(file.bytes().subspan(begin, size));
         EXPECT_EQ(std::memcmp(file.bytes().data(), text.data(), text.size()), 0) << begin;
     }
 }
@@ -90,15 +90,17 @@ TEST_F(Io, AFileThatChangesIsNoticed) {
 }
 
 TEST_F(Io, LeftoversGoUnlessSomebodyHoldsThem) {
-    for (const char* name : {"out.cw2-abc123", "other.png.cw2-000000", "out.backup",
-                             "out.cw2-ABCDEF", "out.cw2-held00", "cw2-abc123"})
+    for (const char* name :
+         {"out.cw2-tmp-abc123", "other.png.cw2-tmp-000000", "out.backup", "out.cw2-tmp-ABCDEF",
+          "out.cw2-tmp-held00", "cw2-tmp-abc123", "model.cw2-backup"})
         write(name, "x");
-    const int held = ::open((folder_ / "out.cw2-held00").c_str(), O_RDONLY);
+    const int held = ::open((folder_ / "out.cw2-tmp-held00").c_str(), O_RDONLY);
     ASSERT_EQ(::flock(held, LOCK_EX), 0);
     commit("out");
-    EXPECT_FALSE(fs::exists(folder_ / "out.cw2-abc123"));
-    EXPECT_FALSE(fs::exists(folder_ / "other.png.cw2-000000"));
-    for (const char* name : {"out", "out.backup", "out.cw2-ABCDEF", "out.cw2-held00", "cw2-abc123"})
+    EXPECT_FALSE(fs::exists(folder_ / "out.cw2-tmp-abc123"));
+    EXPECT_FALSE(fs::exists(folder_ / "other.png.cw2-tmp-000000"));
+    for (const char* name : {"out", "out.backup", "out.cw2-tmp-ABCDEF", "out.cw2-tmp-held00",
+                             "cw2-tmp-abc123", "model.cw2-backup"})
         EXPECT_TRUE(fs::exists(folder_ / name)) << name;
     ::close(held);
 }

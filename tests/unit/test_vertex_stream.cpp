@@ -140,9 +140,7 @@ TEST(VertexStream, TrianglesMayStartAtAnyCorner) {
         }
         const auto after = find_neighbours(indices, 400);
         for (std::size_t v = 0; v < before.size(); ++v) {
-            EXPECT_EQ(before[v].a, after[v].a);
-            EXPECT_EQ(before[v].b, after[v].b);
-            EXPECT_EQ(before[v].c, after[v].c);
+            EXPECT_TRUE(before[v] == after[v]);
         }
     }
 }
@@ -208,9 +206,7 @@ TEST(VertexStream, NeighboursAreThoseOfTheFormat) {
         const auto found = find_neighbours(indices, 400);
         const auto expected = searched(indices, 400);
         for (std::size_t v = 0; v < found.size(); ++v) {
-            EXPECT_EQ(found[v].a, expected[v].a) << v;
-            EXPECT_EQ(found[v].b, expected[v].b) << v;
-            EXPECT_EQ(found[v].c, expected[v].c) << v;
+            EXPECT_TRUE(found[v] == expected[v]) << v;
         }
     }
 }
