@@ -269,9 +269,8 @@ class Loader {
         if ((uri == image.end()) == (view == image.end()))
             throw BakeError("needs either a uri or a bufferView");
         if (view != image.end()) {
-            const auto view_index = view->get<std::size_t>();
-            const Bytes bytes = view_bytes(array("bufferViews")[view_index]);
-            const auto [known, fresh] = shared_.try_emplace(view_index);
+            const Bytes bytes = view_bytes(array("bufferViews")[view->get<std::size_t>()]);
+            const auto [known, fresh] = shared_.try_emplace({bytes.data(), bytes.size()});
             if (fresh) {
                 embedded_bytes_ += bytes.size();
                 if (embedded_bytes_ > file_.size)
@@ -317,8 +316,10 @@ class Loader {
     const Warn& warn_;
     FileFinder finder_;
     std::map<std::filesystem::path, Bytes> mapped_;
-    /// By buffer view: images may share one, and are then one.
-    std::map<std::size_t, std::pair<std::filesystem::path, decltype(GltfImage::embedded)>> shared_;
+    /// By their bytes: images may share these, and are then one.
+    std::map<std::pair<const std::byte*, std::size_t>,
+             std::pair<std::filesystem::path, decltype(GltfImage::embedded)>>
+        shared_;
     std::size_t embedded_bytes_ = 0;  // of those
 };
 

@@ -346,13 +346,38 @@ TEST_F(GltfDraco, ClaimsAreFoundBehindMetadataAndInEitherEncoding) {
     EXPECT_EQ(error(square(data)), refusal);
 }
 
-TEST_F(GltfDraco, PrimitivesThatShareTheirBytesAreBounded) {
+/// In one view or in two of one range, and whether or not they ask for the same attributes.
+TEST_F(GltfDraco, PrimitivesThatShareTheirBytesAreDecodedOnce) {
     std::vector<std::uint8_t> data = kSequential;
-    data.resize(10'000);  // as if there were much in it
+    data.resize(10'000);  // most of the file
     GltfWriter gltf = square(data);
-    EXPECT_EQ(error(gltf), "");
     json& primitives = gltf.root["meshes"][0]["primitives"];
     primitives.push_back(json(primitives[0]));
+    primitives.push_back(json(primitives[0]));
+    primitives[1]["attributes"].erase("TEXCOORD_0");
+    json& again = primitives[2]["extensions"]["KHR_draco_mesh_compression"];
+    again["bufferView"] =
+        gltf.add("bufferViews", json(gltf.root["bufferViews"][again["bufferView"].get<int>()]));
+    const SourceScene scene = read(gltf);
+    ASSERT_EQ(triangle_count(scene), 6u);
+    const glm::vec2 none(0, 1);  // glTF's v is downward
+    for (std::size_t corner = 0; corner < 18; ++corner) {
+        const glm::vec3 p = position(scene, corner % 6);
+        EXPECT_EQ(position(scene, corner), p);
+        EXPECT_EQ(uv(scene, corner), corner / 6 == 1 ? none : 0.5f * (glm::vec2(p.x, p.y) + 1.0f));
+    }
+}
+
+TEST_F(GltfDraco, PartsThatOverlapAreBounded) {
+    std::vector<std::uint8_t> data = kSequential;
+    data.resize(10'000);
+    GltfWriter gltf = square(data);
+    json& primitives = gltf.root["meshes"][0]["primitives"];
+    primitives.push_back(json(primitives[0]));
+    json& other = primitives[1]["extensions"]["KHR_draco_mesh_compression"];
+    json shorter = gltf.root["bufferViews"][other["bufferView"].get<int>()];
+    shorter["byteLength"] = 9'000;
+    other["bufferView"] = gltf.add("bufferViews", std::move(shorter));
     const std::string message = error(gltf);
     EXPECT_TRUE(message.ends_with(": its bytes belong to others, too")) << message;
 }

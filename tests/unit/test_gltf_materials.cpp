@@ -318,6 +318,23 @@ TEST_F(GltfMaterials, ImagesAreEmbeddedOrFiles) {
     EXPECT_TRUE(warnings_.empty());
 }
 
+TEST_F(GltfMaterials, ImagesOfTheSameBytesAreOneHoweverManyViewsTheyHave) {
+    json source;
+    source["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+    source["normalTexture"]["index"] = 1;
+    GltfWriter gltf = with_material(source);
+    const int view = gltf.view(std::vector<std::uint8_t>(20'000));  // most of the file
+    const int again = gltf.add("bufferViews", json(gltf.root["bufferViews"][view]));
+    gltf.root["images"] = {{{"name", "a"}, {"bufferView", view}},
+                           {{"name", "b"}, {"bufferView", again}}};
+    gltf.root["textures"] = {{{"source", 0}}, {{"source", 1}}};
+    const auto maps = read(gltf).materials.at(0).maps;
+    EXPECT_TRUE(warnings_.empty()) << warnings_.front();
+    ASSERT_TRUE(maps[MapUse::base_color] && maps[MapUse::normal]);
+    EXPECT_EQ(maps[MapUse::base_color]->embedded, maps[MapUse::normal]->embedded);
+    EXPECT_EQ(maps[MapUse::base_color]->file, maps[MapUse::normal]->file);
+}
+
 TEST_F(GltfMaterials, ImagesThatCannotBeHadAreNamedOnce) {
     json source;
     source["pbrMetallicRoughness"] = {{"baseColorTexture", {{"index", 0}}},
