@@ -79,6 +79,22 @@ void check_extent(const mesh_format::SceneRecord& packed, const SourceScene& sce
                                 std::numeric_limits<float>::max()));
 }
 
+/// Warns where no triangle covers anything: its picture would be empty, and nobody know why.
+void warn_of_no_area(const SourceScene& scene, const std::filesystem::path& path,
+                     const Warn& warn) {
+    const auto at = [&](std::size_t corner) {
+        return glm::dvec3(scene.positions[scene.corners[corner].position]);
+    };
+    for (std::size_t i = 0; i + 2 < scene.corners.size(); i += 3) {
+        const glm::dvec3 a = at(i + 1) - at(i);
+        const glm::dvec3 b = at(i + 2) - at(i);
+        // Whoever writes corners of a line as floats rounds them.
+        constexpr double kFlat = 1e-6;
+        if (glm::length(glm::cross(a, b)) > kFlat * glm::length(a) * glm::length(b)) return;
+    }
+    warn(path.string() + ": shows nothing: no triangle has an area");
+}
+
 TextureSet make_textures(const Settings& settings, const SourceScene& scene, const Warn& warn) {
     if (settings.textures == TextureMode::none) {
         return {.textures = {}, .materials = std::vector<MaterialTextures>(scene.materials.size())};
@@ -247,6 +263,7 @@ std::string run_stages(const Settings& settings, const Warn& warn, StageClock& c
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     std::max<std::size_t>(threads, 1));
 
+    require_writable(settings);
     clock.begin("read");
     SourceScene scene = read_scene(settings, warn);
     const std::vector<std::filesystem::path> inputs = input_files(scene, settings);
@@ -254,6 +271,7 @@ std::string run_stages(const Settings& settings, const Warn& warn, StageClock& c
     const std::string rule = settings.depfile ? depfile_text(settings.output, inputs) : "";
     clock.begin("normals");
     if (settings.z_up) turn_z_up(scene);
+    warn_of_no_area(scene, settings.input, warn);
     generate_normals(scene);
     clock.begin("textures");
     const TextureSet textures = make_textures(settings, scene, warn);
@@ -312,6 +330,7 @@ std::string export_baked(const Settings& settings, const Warn& warn) {
     if (!is_gltf(settings.output))
         throw BakeError(settings.input.string() + ": is baked already; -o FILE.glb exports it");
     refuse_overwriting(settings, {settings.input});
+    require_writable(settings);
     const std::string rule =
         settings.depfile ? depfile_text(settings.output, {settings.input}) : "";
     const common::MappedFile file(settings.input);

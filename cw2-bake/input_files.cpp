@@ -145,6 +145,15 @@ void refuse_overwriting(const Settings& settings, const std::vector<fs::path>& i
     if (settings.depfile) take(*settings.depfile);
 }
 
+void require_writable(const Settings& settings) {
+    std::error_code error;
+    if (!fs::exists(settings.input, error)) return;
+    const auto check = [](const fs::path& output) { const common::OutputFile file(output); };
+    check(settings.output);
+    if (settings.stats) check(*settings.stats);
+    if (settings.depfile) check(*settings.depfile);
+}
+
 std::string depfile_text(const fs::path& output, const std::vector<fs::path>& inputs) {
     std::string text = escaped(output) + ':';
     std::string rest;

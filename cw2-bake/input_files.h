@@ -18,6 +18,10 @@ std::vector<std::filesystem::path> input_files(const SourceScene& scene, const S
 /// where two of them are one file.
 void refuse_overwriting(const Settings& settings, const std::vector<std::filesystem::path>& inputs);
 
+/// Throws common::FileError where one of them cannot be written, unless the input is missing, which
+/// is worth more to know.
+void require_writable(const Settings& settings);
+
 /// The rule "output: inputs" for make and ninja, and for make an empty rule for all inputs but the
 /// first: one that is missing makes the output stale, and is no error. Throws BakeError for a name
 /// that make or ninja would take for something else. `inputs` is not empty.

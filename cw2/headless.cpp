@@ -115,20 +115,23 @@ class OffscreenTarget {
 };
 
 struct Timings {
-    double load = 0.0;         ///< file to device, milliseconds
-    double first_frame = 0.0;  ///< pipelines, the picture's frames, read-back
-    double save = 0.0;
+    double load = 0.0;                    ///< file to device, milliseconds
+    std::optional<double> first_frame{};  ///< pipelines, the picture's frames, read-back
+    std::optional<double> save{};         ///< of one picture
 };
 
 std::string stats_of(const Device& device, const Scene& scene, const Timings& timings,
                      const std::optional<Bench>& bench, const PictureSize& size) {
+    const auto time = [](const char* name, const std::optional<double>& milliseconds) {
+        return milliseconds ? fmt::format("  \"{}_ms\": {:.3f},\n", name, *milliseconds)
+                            : std::string();
+    };
     return fmt::format(
         "{{\n  \"device\": {},\n  \"triangles\": {},\n  \"draws\": {},\n"
-        "  \"load_ms\": {:.3f},\n  \"first_frame_ms\": {:.3f},\n  \"save_ms\": {:.3f},\n"
-        "  \"peak_memory_mib\": {:.1f}{}\n}}\n",
+        "  \"load_ms\": {:.3f},\n{}{}  \"peak_memory_mib\": {:.1f}{}\n}}\n",
         common::quoted_text(device.properties().deviceName), scene.triangle_count(),
-        scene.draws().size(), timings.load, timings.first_frame, timings.save, peak_memory(),
-        bench ? json_of(*bench, size) : std::string());
+        scene.draws().size(), timings.load, time("first_frame", timings.first_frame),
+        time("save", timings.save), peak_memory(), bench ? json_of(*bench, size) : std::string());
 }
 
 /// Saves pictures on a thread of its own, while the next one is drawn.
@@ -189,7 +192,7 @@ FrameSettings turned(const Options& options, const FrameSettings& start, std::ui
 /// Of --bench, the frame of a picture.
 FrameSettings bench_frame(const Options& options, const FrameSettings& start, std::uint32_t picture,
                           const Bounds& bounds) {
-    return options.orbit ? turned(options, start, picture, options.bench_pictures, bounds) : start;
+    return options.orbit ? turned(options, start, picture, *options.bench_pictures, bounds) : start;
 }
 
 /// A scene on its device, and what draws it into files.
@@ -238,7 +241,7 @@ struct Studio {
         // What is built or compiled when it first draws.
         target.render(scene, settings, [](std::uint32_t) {});
         Bench bench;
-        for (std::uint32_t i = 0; i < options.bench_pictures; ++i) {
+        for (std::uint32_t i = 0; i < *options.bench_pictures; ++i) {
             const FrameSettings now = bench_frame(options, settings, i, scene.bounds());
             const Clock::time_point start = Clock::now();
             const std::clock_t cpu_start = std::clock();
@@ -248,7 +251,7 @@ struct Studio {
             bench.device.push_back(target.gpu_milliseconds());
         }
         target.count(bench, scene,
-                     bench_frame(options, settings, options.bench_pictures - 1, scene.bounds()));
+                     bench_frame(options, settings, *options.bench_pictures - 1, scene.bounds()));
         return bench;
     }
 };
@@ -295,9 +298,8 @@ void print_pixel(const Device& device, const Layouts& layouts, const Scene& scen
 /// The camera of all pictures of a run, nothing where it moves.
 std::optional<Camera> only_camera(const Options& options, const FrameSettings& settings,
                                   const Bounds& bounds) {
-    const bool turns = options.frames
-                           ? options.frames->size() > 1 && options.orbit != Orbit::light
-                           : options.bench_pictures > 0 && options.orbit == Orbit::camera;
+    const bool turns = options.frames ? options.frames->size() > 1 && options.orbit != Orbit::light
+                                      : options.bench_pictures && options.orbit == Orbit::camera;
     if (turns) return std::nullopt;
     if (!options.frames) return settings.camera;
     return turned(options, settings, options.frames->first, options.frames->count, bounds).camera;
@@ -325,7 +327,7 @@ std::string render(const Device& device, const Options& options, SceneFile file,
     Scene scene(device, layouts, file, textures, needed_levels(options, settings, textures, file));
     std::optional<OffscreenTarget> target;
     std::future<void> rehearsal;
-    const bool draws = kind || options.bench_pictures > 0;
+    const bool draws = kind || options.bench_pictures;
     if (draws) {
         target.emplace(device, layouts, options, kind.value_or(ImageKind::png));
         // On CPUs shaders are compiled when they first draw: beside the decoding of textures.
@@ -342,7 +344,7 @@ std::string render(const Device& device, const Options& options, SceneFile file,
     Studio studio{options, scene, *target, timings};
     if (kind) options.frames ? studio.draw_turn(settings) : studio.draw_picture(settings);
     std::optional<Bench> bench;
-    if (options.bench_pictures > 0) {
+    if (options.bench_pictures) {
         bench = studio.measure(settings);
         common::print(text_of(*bench, options.size, target->samples()));
     }

@@ -38,7 +38,7 @@ int run(const cw2::Options& options) {
     }
     // A scene that is none is told before a device or a display is missed.
     const common::MappedFile exists(options.scene);
-    if (options.output || options.pixel || options.bench_pictures > 0)
+    if (options.output || options.pixel || options.bench_pictures)
         return cw2::render_headless(options);
     return cw2::run_window(options, common::beside_program("../share/cw2"));
 }

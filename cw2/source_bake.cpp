@@ -145,6 +145,7 @@ constexpr std::string_view kPrefix = "cw2-bake: ";
 SourceBake::SourceBake(const fs::path& source, const BakeSettings& settings,
                        std::function<void(const std::string&)> tell)
     : source_(fs::absolute(source)),
+      folder_as_given_(source.is_relative() ? fs::current_path() / "" : fs::path()),
       baker_(common::beside_program("cw2-bake")),
       tell_(std::move(tell)) {
     const common::MappedFile exists(source);
@@ -240,7 +241,7 @@ bool SourceBake::reuse() {
         sources_.push_back(path);
     }
     if (sources_.empty()) return false;
-    for (++i; i < lines.size(); ++i) tell_(lines[i]);
+    for (++i; i < lines.size(); ++i) tell_(as_given(lines[i]));
     ::utimensat(AT_FDCWD, baked_.c_str(), nullptr, 0);
     return true;
 }
@@ -274,6 +275,21 @@ bool SourceBake::read_output(std::chrono::milliseconds patience) {
     return false;
 }
 
+/// A message of cw2-bake's, which is given an absolute path, with paths as the user gave them.
+std::string SourceBake::as_given(std::string line) const {
+    const std::string& folder = folder_as_given_.native();
+    if (folder.size() <= 1) return line;
+    for (std::size_t at = 0; (at = line.find(folder, at)) != std::string::npos;) {
+        const bool begins =
+            at == 0 || std::string_view(" '\"(").find(line[at - 1]) != std::string_view::npos;
+        if (begins)
+            line.erase(at, folder.size());
+        else
+            at += folder.size();
+    }
+    return line;
+}
+
 /// Lines end in a line feed; what a carriage return or an escape sequence begins is the progress.
 void SourceBake::take(std::string_view text) {
     for (const char c : text) {
@@ -282,7 +298,7 @@ void SourceBake::take(std::string_view text) {
             lines_.push_back(std::exchange(text_, {}));
             if (!lines_.back().starts_with(kPrefix) ||
                 lines_.back().find("warning: ") != std::string::npos)
-                tell_(lines_.back());
+                tell_(as_given(lines_.back()));
         } else if (c == '\r' || (text_ == "\033[" && c == 'K')) {
             text_.clear();
         } else {
@@ -301,7 +317,8 @@ bool SourceBake::finish() {
     ::close(std::exchange(output_, -1));
     progress_.clear();
     if (!WIFEXITED(status))
-        fail(source_, fmt::format("cw2-bake was ended by signal {}", WTERMSIG(status)));
+        fail(as_given(source_.string()),
+             fmt::format("cw2-bake was ended by signal {}", WTERMSIG(status)));
     if (WEXITSTATUS(status) != 0) {
         const std::string last = lines_.empty() ? "cw2-bake cannot be started" : lines_.back();
         // Names that a depfile cannot hold; without one the next run bakes again.
@@ -311,7 +328,8 @@ bool SourceBake::finish() {
             start();
             return false;
         }
-        throw common::FileError(last.starts_with(kPrefix) ? last.substr(kPrefix.size()) : last);
+        throw common::FileError(
+            as_given(last.starts_with(kPrefix) ? last.substr(kPrefix.size()) : last));
     }
     sources_ = has_depfile_ ? inputs_of(text_of(depfile())) : std::vector{source_};
     if (is_temporary_) return true;

@@ -59,12 +59,14 @@ class SourceBake {
     void start();
     bool read_output(std::chrono::milliseconds patience);
     void take(std::string_view text);
+    std::string as_given(std::string line) const;
     bool finish();
     void note_sources();
     void remove_old_entries() const;
     std::filesystem::path depfile() const;
 
-    std::filesystem::path source_;
+    std::filesystem::path source_;           ///< absolute
+    std::filesystem::path folder_as_given_;  ///< with a slash; empty where that was absolute, too
     std::filesystem::path baker_;
     std::vector<std::string> options_;
     std::function<void(const std::string&)> tell_;

@@ -346,8 +346,9 @@ std::vector<Setting> all_settings() {
               "print what shades that pixel as JSON, with no window [0,0 is the upper left]",
               &O::pixel),
         value("stats", "FILE.json", "write timings and counts as JSON", &O::stats),
-        value("bench", "N", "draw N pictures, with no window, and print what they take",
-              &O::bench_pictures, in(kBenchRange)),
+        value("bench", form_of(kBenchRange),
+              "draw so many pictures, with no window, and print what they take", &O::bench_pictures,
+              in_optional(kBenchRange)),
     };
 }
 

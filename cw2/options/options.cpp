@@ -113,7 +113,7 @@ void require_sense(const Options& options) {
             fmt::format("--output: '{}' ends in neither .png nor .exr", options.output->string()));
     }
     if (!options.output && options.frames) throw UsageError("--frames needs --output");
-    if (!options.output && options.bench_pictures == 0 && options.stats)
+    if (!options.output && !options.bench_pictures && options.stats)
         throw UsageError("--stats needs --output or --bench");
     if (options.encoding == Encoding::linear && options.false_color) {
         throw UsageError("--encoding linear and --false-color exclude each other");
@@ -136,10 +136,10 @@ void require_sense(const Options& options) {
             }
         }
     }
-    if (!options.frames && options.bench_pictures == 0 && options.orbit)
+    if (!options.frames && !options.bench_pictures && options.orbit)
         throw UsageError("--orbit needs --frames or --bench");
     if (!options.frames) return;
-    if (options.bench_pictures > 0) throw UsageError("--bench and --frames exclude each other");
+    if (options.bench_pictures) throw UsageError("--bench and --frames exclude each other");
     if (options.frames->size() > 1 && !frame_name(options.output->string(), 0)) {
         throw UsageError(
             fmt::format("--output: '{}' is no pattern for several frames, such as name_%04d.png",

@@ -52,7 +52,7 @@ inline constexpr Range<float> kFovRange{1.0f, 179.0f};
 inline constexpr Range<float> kOverrideRange{0.0f, 1.0f};  ///< of roughness and metalness
 inline constexpr Range<float> kNormalStrengthRange{0.0f, 10.0f};
 inline constexpr Range<std::uint32_t> kAnisotropyRange{1u, 16u};
-inline constexpr Range<std::uint32_t> kBenchRange{0u, 1'000'000u};
+inline constexpr Range<std::uint32_t> kBenchRange{1u, 1'000'000u};
 
 inline constexpr float kVerticalFov = 60.0f;  ///< degrees, where nobody asks for another
 
@@ -95,7 +95,7 @@ struct Options {
     std::optional<Orbit> orbit;        ///< in `frames`; none: the camera's
     std::optional<PixelPlace> pixel;   ///< whose numbers are printed
     std::optional<std::filesystem::path> stats;
-    std::uint32_t bench_pictures = 0;  ///< pictures to time, in kBenchRange
+    std::optional<std::uint32_t> bench_pictures;  ///< to time, in kBenchRange
 
     bool operator==(const Options&) const = default;
 };

@@ -241,6 +241,7 @@ TEST_F(Cli, Cw2RefusesWrongUsage) {
         {{"--pixel", "1280,0"}, {"--pixel", "1280,0"}},
         {{"--anisotropy", "99"}, {"--anisotropy", "99"}},
         {{"--bench", "-1"}, {"--bench", "-1"}},
+        {{"--bench", "0"}, {"--bench", "'0'", "1.."}},
         {{"--exposure", "bright"}, {"--exposure", "bright"}},
         {{"--exposure", "65"}, {"--exposure", "65"}},
         {{"--false-color", "1,1"}, {"--false-color", "1,1"}},

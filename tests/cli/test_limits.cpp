@@ -11,7 +11,7 @@ TEST_F(Limits, AnExportThatWouldShowNothingIsRefused) {
     write("flat.obj", flat);
     bake_well({"flat.obj", "-o", "flat.cw2mesh", "--quiet"});
     for (const char* input : {"flat.obj", "flat.cw2mesh"}) {
-        const Outcome outcome = bake({input, "-o", "flat.glb"});
+        const Outcome outcome = bake({input, "-o", "flat.glb", "--quiet"});
         EXPECT_EQ(outcome.status, 1);
         EXPECT_EQ(outcome.err, std::string("cw2-bake: ") + input +
                                    ": shows no triangles: two corners of each are equal\n");
@@ -20,6 +20,22 @@ TEST_F(Limits, AnExportThatWouldShowNothingIsRefused) {
     write("flat.obj", flat + "v 2 2 2\nf 1 3 4\n");  // a line, but of distinct corners
     bake_well({"flat.obj", "-o", "flat.glb", "--quiet"});
     bake_well({"flat.glb", "-o", "again.cw2mesh", "--quiet"});
+}
+
+TEST_F(Limits, ASceneWithoutAnyAreaIsWarnedOf) {
+    // A line, a point, and a line whose corners are rounded.
+    const std::string flat =
+        "v 0 0 0\nv 1 0 0\nv 3 0 0\nf 1 2 3\nf 2 2 2\n"
+        "v 0.1 0.1 0.1\nv 0.2 0.2 0.2\nv 0.7 0.7 0.7\nf 4 5 6\n";
+    write("flat.obj", flat);
+    const Outcome outcome = bake({"flat.obj", "--quiet", "--strict"});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.err, "cw2-bake: flat.obj: shows nothing: no triangle has an area\n");
+    EXPECT_EQ(bake({"flat.obj"}).err,
+              "cw2-bake: warning: flat.obj: shows nothing: no triangle has an area\n");
+    // A sliver of 1:1000 far from the origin is one.
+    write("sliver.obj", flat + "v 900 0 0\nv 901 0 0\nv 902 0.001 0\nf 7 8 9\n");
+    bake_well({"sliver.obj"});
 }
 
 TEST_F(Limits, CoordinatesNearTheLargestFloatAreBlamedOnTheInput) {

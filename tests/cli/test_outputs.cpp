@@ -97,6 +97,33 @@ TEST_F(Outputs, FoldersAndSocketsAreRefused) {
     ::close(socket);
 }
 
+/// A bake reads, and warns, before it writes.
+TEST_F(Outputs, WhatCannotBeWrittenIsFoundBeforeTheWorkBegins) {
+    write("warns.obj", "usemtl missing\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    ASSERT_NE(bake({"warns.obj", "-o", "warns.cw2mesh"}).err, "");
+    const Words all{"out.cw2mesh", "depfile", "stats.json"};
+    const auto before = names();
+    for (const std::string& lost : all) {
+        const auto name = [&](const std::string& file) {
+            return file == lost ? "nowhere/" + file : file;
+        };
+        const Outcome outcome = bake(
+            {"warns.obj", "-o", name(all[0]), "--depfile", name(all[1]), "--stats", name(all[2])});
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_EQ(outcome.err,
+                  "cw2-bake: nowhere/" + lost + ": cannot be written: No such file or directory\n");
+        EXPECT_EQ(names(), before);
+    }
+    const Outcome exported =
+        bake({"scene.cw2mesh", "-o", "out.glb", "--depfile", "nowhere/depfile"});
+    EXPECT_EQ(exported.err,
+              "cw2-bake: nowhere/depfile: cannot be written: No such file or directory\n");
+    EXPECT_EQ(names(), before);
+    // Where the output's folder is missing since the input's name is wrong, that is said.
+    EXPECT_EQ(bake({"nowhere/scene.obj"}).err,
+              "cw2-bake: nowhere/scene.obj: cannot be opened: No such file or directory\n");
+}
+
 TEST_F(Outputs, OfALinkItsTargetIsReplaced) {
     fs::create_directory(here("folder"));
     write("folder/old", "old");

@@ -88,6 +88,7 @@ TEST_F(SourceBake, WarnsAgainUntilWhatIsMissingIsThere) {
     EXPECT_EQ(first.status, 0);
     EXPECT_NE(first.err.find("cw2-bake: warning: "), std::string::npos) << first.err;
     EXPECT_NE(first.err.find("mask.png"), std::string::npos) << first.err;
+    EXPECT_EQ(first.err.find(folder_.path()), std::string::npos) << first.err;
     const auto before = entries();
     const Outcome again = draw("scene.obj", "a.png");
     EXPECT_EQ(again.err, first.err);
@@ -121,7 +122,13 @@ TEST_F(SourceBake, PassesOptionsOnAndErrorsBack) {
     write("broken.obj", "v 0 0 0\nf 1 2 3\n");
     const Outcome broken = draw("broken.obj", "broken.png");
     EXPECT_EQ(broken.status, 1);
-    EXPECT_NE(broken.err.find("broken.obj:2: "), std::string::npos) << broken.err;
+    EXPECT_TRUE(broken.err.starts_with("cw2: broken.obj:2: ")) << broken.err;
+    // As it was given, whatever the name's form.
+    const Outcome absolute = draw(here("broken.obj"), "broken.png");
+    EXPECT_TRUE(absolute.err.starts_with("cw2: " + here("broken.obj").string() + ":2: "))
+        << absolute.err;
+    const Outcome upward = draw("temporary/../broken.obj", "broken.png");
+    EXPECT_TRUE(upward.err.starts_with("cw2: temporary/../broken.obj:2: ")) << upward.err;
 
     bake_well({"scene.obj", "--textures", "none"});
     EXPECT_EQ(draw("scene.cw2mesh", "a.png", {"--up", "z"}).status, 2);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <random>
 #include <set>
@@ -344,12 +345,6 @@ TEST(Bench, SaysWhatAPictureTakes) {
         << "mtllib walls.mtl\nusemtl near\nv -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nf 1 2 3 4\n"
            "v -9 -9 -1\nv 9 -9 -1\nv 9 9 -1\nv -9 9 -1\nusemtl far\nf 5 6 7 8\n";
     const std::filesystem::path scene = bake_scene(folder / "walls.obj");
-    const auto number = [&](const std::string& name) {
-        std::ifstream file(folder / "stats.json");
-        const std::string text{std::istreambuf_iterator<char>(file), {}};
-        const std::size_t at = text.find('"' + name + "\": ");
-        return at == text.npos ? -1.0 : std::stod(text.substr(at + name.size() + 4));
-    };
     for (const std::string orbit : {"", "camera"}) {
         std::vector<std::string> command{CW2_PROGRAM,
                                          scene,
@@ -369,7 +364,12 @@ TEST(Bench, SaysWhatAPictureTakes) {
         ASSERT_EQ(outcome.status, 0) << outcome.err;
         EXPECT_EQ(outcome.err, "");
         EXPECT_NE(outcome.out.find("5 pictures of 64x48, 4 frames each"), std::string::npos);
+        const auto stats = nlohmann::json::parse(std::ifstream(folder / "stats.json"));
+        const auto number = [&](const std::string& name) { return stats.at(name).get<double>(); };
         EXPECT_EQ(number("bench_pictures"), 5.0);
+        EXPECT_GT(number("load_ms"), 0.0);
+        // Of an --output, which there is none of.
+        EXPECT_FALSE(stats.contains("first_frame_ms") || stats.contains("save_ms"));
         EXPECT_EQ(number("frame_triangles"), 4.0);
         EXPECT_EQ(number("pipelines"), 1.0);
         for (const char* what : {"wall", "cpu"}) {

@@ -79,7 +79,7 @@ class RandomOptions {
             options.frames = {below(last + 1), last, count};
             // What makes no sense cannot be read, and so need not be written.
             options.output = "a #%04d \"b\".png";
-            options.bench_pictures = 0;
+            options.bench_pictures.reset();
             maybe([&] { options.orbit = below(2) == 0 ? Orbit::camera : Orbit::light; });
         });
         if (!options.false_color && below(2) == 0) options.encoding = Encoding::linear;
@@ -90,7 +90,7 @@ class RandomOptions {
         options.list_views = below(2) == 0;
         options.validation = below(2) == 0;
         maybe([&] { options.stats = text() + ".json"; });
-        if (!options.frames) options.bench_pictures = below(1000);
+        if (!options.frames && below(2) == 0) options.bench_pictures = 1 + below(1000);
         return options;
     }
 
