@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds Release, runs the tests; then the unit tests with clang's
-# sanitizers. Arguments go to ctest (-R NAME, -L LABEL), and then only Release is tested.
+# Installs what is missing, builds Release, runs the tests; then, with clang's sanitizers, the unit tests
+# and the fuzz targets. Arguments go to ctest (-R NAME, -L LABEL), and then only Release is tested.
 # With --root bookworm or --root trixie it does so in a clean Debian 12 or 13, in build/roots; this
 # takes root and debootstrap.
 set -euo pipefail
@@ -26,6 +26,8 @@ cmake --build --preset release "${quiet[@]}"
 ctest --preset release --no-tests=error -j2 "$@"
 [[ $# -eq 0 ]] || exit 0
 
-configure sanitize
-cmake --build --preset sanitize "${quiet[@]}"
-ctest --preset sanitize --no-tests=error -j2
+for preset in sanitize fuzz; do
+    configure $preset
+    cmake --build --preset $preset "${quiet[@]}"
+    ctest --preset $preset --no-tests=error -j2
+done

@@ -19,13 +19,6 @@ namespace {
 
 const bake::Warn kIgnore = [](const std::string&) {};
 
-/// FNV-1a: nearby inputs draw other forms.
-std::uint64_t draw_from(std::span<const std::uint8_t> bytes) {
-    std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
-    for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 0x100'0000'01B3;
-    return hash ^ hash >> 32;
-}
-
 }  // namespace
 
 const std::filesystem::path& folder() {
@@ -50,6 +43,12 @@ void write(const std::string& name, std::span<const std::uint8_t> bytes) {
     std::ofstream(folder() / name, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
+}
+
+std::uint64_t draw_from(std::span<const std::uint8_t> bytes) {
+    std::uint64_t hash = 0xCBF2'9CE4'8422'2325;
+    for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 0x100'0000'01B3;
+    return hash ^ hash >> 32;
 }
 
 void bake_any(const std::string& name, std::span<const std::uint8_t> bytes) {

@@ -16,6 +16,9 @@ const std::filesystem::path& folder();
 /// Writes a file in the folder.
 void write(const std::string& name, std::span<const std::uint8_t> bytes);
 
+/// A number that nearby inputs have others of (FNV-1a).
+std::uint64_t draw_from(std::span<const std::uint8_t> bytes);
+
 /// Bakes a file of the folder, in forms that are drawn from `bytes`; half of the time to a GLB,
 /// which is baked once more. Errors on the input are well.
 void bake_any(const std::string& name, std::span<const std::uint8_t> bytes);

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# Fuzzes one target (obj, gltf, mesh, images) that the preset sanitize built: replays its seeds, then
+# Fuzzes one target (obj, gltf, mesh, images) that the preset fuzz built: replays its seeds, then
 # makes more of them for some seconds, or with -runs=N so many. Without a CORPUS they are the same
-# ones every time; with one what is new stays there and is taken up the next time. What breaks the target stays in BUILD/fuzz; as a seed it stays mended.
-# Usage: run.sh BUILD TARGET SECONDS|-runs=N [CORPUS]
+# ones every time; with one what is new stays there and is taken up the next time, and so many JOBS
+# (1) work on it side by side. What breaks the target stays in BUILD/fuzz; as a seed it stays mended.
+# Usage: run.sh BUILD TARGET SECONDS|-runs=N [CORPUS [JOBS]]
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 build=$1 target=$2 limit=$3
 [[ $limit == -runs=* ]] || limit=-max_total_time=$limit
-work=$(mktemp -d)
+# In memory: a run of the target writes and reads some small files.
+work=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)
 trap 'rm -rf "$work"' EXIT
 corpus=${4:-$work/corpus}
 mkdir -p "$build/fuzz" "$corpus" "$work/scratch" "$work/seeds"
@@ -31,10 +33,11 @@ options=()
 [[ -f $here/$target.dict ]] && options+=(-dict="$here/$target.dict")
 # A test tries the same every time; a search goes on where nobody was.
 [[ $# -ge 4 ]] || options+=(-seed=1)
+[[ $# -lt 5 ]] || options+=(-fork="$5")
 TMPDIR=$work/scratch "$build/bin/fuzz_$target" "${options[@]}" "$limit" \
-    -entropic=0 -timeout=100 -rss_limit_mb=3000 -malloc_limit_mb=1500 -max_len=20000 -print_final_stats=1 \
+    -entropic=0 -timeout=100 -rss_limit_mb=3000 -malloc_limit_mb=1500 -max_len=5000 -print_final_stats=1 \
     -artifact_prefix="$build/fuzz/$target-" "$corpus" "$work/seeds" >"$work/log" 2>&1 || {
     tail -n 60 "$work/log"
     exit 1
 }
-grep -E 'number_of_executed_units|DONE' "$work/log"
+grep -E 'number_of_executed_units|DONE|^#[0-9]+: cov' "$work/log" | tail -n 1
