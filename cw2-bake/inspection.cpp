@@ -50,8 +50,8 @@ const char* name_of(TextureFormat format) {
     switch (format) {
         case TextureFormat::r8_unorm:
             return "r8_unorm";
-        case TextureFormat::rgba8_unorm:
-            return "rgba8_unorm";
+        case TextureFormat::rg8_unorm:
+            return "rg8_unorm";
         case TextureFormat::rgba8_srgb:
             return "rgba8_srgb";
         case TextureFormat::bc1_srgb:

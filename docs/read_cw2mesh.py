@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads .cw2mesh files of format version 5, as docs/format.md describes them.
+"""Reads .cw2mesh files of format version 6, as docs/format.md describes them.
 
     import read_cw2mesh
     scene = read_cw2mesh.read("model.cw2mesh")
@@ -17,7 +17,7 @@ import math
 import struct
 import sys
 
-VERSION = 5
+VERSION = 6
 SECTIONS = ("scene", "meshes", "chunks", "materials", "textures", "sources", "strings", "vertices",
             "indices", "texels", "encoded_vertices", "encoded_indices")
 MAP_USES = ("base_color", "roughness", "metalness", "normal", "alpha_mask", "emission")
@@ -28,7 +28,7 @@ COLOR_FORMS = ("none", "rgba8")
 NO_TEXTURE = 0xFFFFFFFF
 
 # Texture formats: name, texels along a side of a block, bytes of a block, channels of a texel.
-FORMATS = (("r8_unorm", 1, 1, 1), ("rgba8_unorm", 1, 4, 4), ("rgba8_srgb", 1, 4, 4),
+FORMATS = (("r8_unorm", 1, 1, 1), ("rg8_unorm", 1, 2, 2), ("rgba8_srgb", 1, 4, 4),
            ("bc1_srgb", 4, 8, 4), ("bc4_unorm", 4, 8, 1), ("bc5_unorm", 4, 16, 2))
 
 
@@ -290,7 +290,7 @@ BLOCK_TEXELS = {"bc1_srgb": bc1_texels, "bc4_unorm": bc4_texels, "bc5_unorm": bc
 
 def texels(scene, texture, level=0):
     """Width, height and the texels of a level: rows from the top, 8 bits a channel, of which r8 and bc4
-    have one, bc5 two (x and y of a normal), and the others four."""
+    have one, rg8 and bc5 two (x and y of a normal), and the others four."""
     width, height, offset, size = list(level_sizes(texture))[level]
     name, side, block_bytes, channels = FORMATS[texture.format]
     data = scene.texels[texture.offset + offset:texture.offset + offset + size]

@@ -34,7 +34,7 @@ namespace mesh_format {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 inline constexpr std::array<char, 8> kMagic{'C', 'W', '2', 'M', 'E', 'S', 'H', '\0'};
-inline constexpr std::uint32_t kVersion = 5;
+inline constexpr std::uint32_t kVersion = 6;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 /// A mesh's vertices are addressed by 16-bit indices.
 inline constexpr std::uint32_t kMaxMeshVertices = 65'536;
@@ -252,10 +252,10 @@ struct MaterialRecord {
 };
 
 /// The blocks are those of the Khronos Data Format Specification 1.3, 4 x 4 texels each. A normal
-/// map holds 0.5 n + 0.5; in bc5_unorm x and y alone, and z = sqrt(max(0, 1 - x^2 - y^2)).
+/// map holds 0.5 n + 0.5 of x and y alone, and z = sqrt(max(0, 1 - x^2 - y^2)).
 enum class TextureFormat : std::uint32_t {
     r8_unorm,
-    rgba8_unorm,
+    rg8_unorm,
     rgba8_srgb,
     bc1_srgb,   ///< opaque red, green and blue
     bc4_unorm,  ///< red
@@ -272,7 +272,7 @@ inline constexpr PerMap<MapInfo> kMaps{{
     {"base colour", TextureFormat::rgba8_srgb, TextureFormat::bc1_srgb},
     {"roughness", TextureFormat::r8_unorm, TextureFormat::bc4_unorm},
     {"metalness", TextureFormat::r8_unorm, TextureFormat::bc4_unorm},
-    {"normal", TextureFormat::rgba8_unorm, TextureFormat::bc5_unorm},
+    {"normal", TextureFormat::rg8_unorm, TextureFormat::bc5_unorm},
     {"alpha mask", TextureFormat::r8_unorm, TextureFormat::bc4_unorm},
     {"emission", TextureFormat::rgba8_srgb, TextureFormat::bc1_srgb},
 }};
@@ -378,7 +378,8 @@ constexpr std::uint32_t block_bytes(TextureFormat format) {
     switch (format) {
         case TextureFormat::r8_unorm:
             return 1;
-        case TextureFormat::rgba8_unorm:
+        case TextureFormat::rg8_unorm:
+            return 2;
         case TextureFormat::rgba8_srgb:
             return 4;
         case TextureFormat::bc1_srgb:

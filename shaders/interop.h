@@ -56,10 +56,10 @@ struct DrawConstants {
     vec3 emission;  // 1 is white paper that faces a light of colour 1
     float metalness;
     float alpha_cutoff;
-    uint normal_map;     // kNormalMapAbsent...
-    float normal_scale;  // multiplies x and y of what the normal map holds
-    float back_normals;  // multiplies the normals of back faces: 1 or -1
-    uint material;       // index
+    uint has_normal_map;  // 0 or 1
+    float normal_scale;   // multiplies x and y of what the normal map holds
+    float back_normals;   // multiplies the normals of back faces: 1 or -1
+    uint material;        // index
 };
 
 // Push constants after those, at kDisplayOffset: how a view's values become colours.
@@ -85,10 +85,6 @@ CW2_CONSTANT uint kFrameBinding = 0;
 CW2_CONSTANT uint kMeanBinding = 1;
 CW2_CONSTANT uint kBytesBinding = 2;
 CW2_CONSTANT uint kAverageGroup = 8;  // pixels a side of a group of invocations
-
-CW2_CONSTANT uint kNormalMapAbsent = 0;
-CW2_CONSTANT uint kNormalMapXyz = 1;
-CW2_CONSTANT uint kNormalMapXy = 2;  // z is rebuilt
 
 // Vertex inputs; all are read as unsigned integers of the width their form has.
 CW2_CONSTANT uint kPositionLocation = 0;

@@ -47,9 +47,9 @@ vec3 vertex_normal() { return side() * normalize(world_normal); }
 
 // In MikkTSpace's way: the bitangent from the interpolated normal and tangent as they are, only
 // the sum is normalised.
-vec3 shading_normal(vec3 texel) {
-    vec3 t = texel * 2.0 - 1.0;
-    if (merged_maps != 0 || draw.normal_map == kNormalMapXy) t.z = sqrt(max(1.0 - dot(t.xy, t.xy), 0.0));
+vec3 shading_normal(vec2 texel) {
+    vec3 t = vec3(texel * 2.0 - 1.0, 0.0);
+    t.z = sqrt(max(1.0 - dot(t.xy, t.xy), 0.0));
     t.xy *= draw.normal_scale;
     const vec3 bitangent = handedness * cross(world_normal, world_tangent);
     return side() * normalize(t.x * world_tangent + t.y * bitangent + t.z * world_normal);
@@ -59,7 +59,7 @@ Surface surface_at_fragment() {
     Surface surface;
     surface.base_color =
         draw.base_color * vertex_color.rgb * texture(base_color_map, uv, display.lod_bias).rgb;
-    const bool has_normal_map = draw.normal_map != kNormalMapAbsent;
+    const bool has_normal_map = draw.has_normal_map != 0;
     vec4 texel = vec4(0.0);
     if (merged_maps != 0 || (use_normal_map != 0 && has_normal_map))
         texel = texture(normal_map, uv, display.lod_bias);
@@ -72,7 +72,7 @@ Surface surface_at_fragment() {
         surface.metalness *=
             merged_maps != 0 ? texel.a : texture(metalness_map, uv, display.lod_bias).r;
     surface.normal =
-        use_normal_map != 0 && has_normal_map ? shading_normal(texel.xyz) : vertex_normal();
+        use_normal_map != 0 && has_normal_map ? shading_normal(texel.xy) : vertex_normal();
     return surface;
 }
 

@@ -18,7 +18,7 @@ TextureFormat compressed(TextureFormat format) {
     switch (format) {
         case TextureFormat::r8_unorm:
             return TextureFormat::bc4_unorm;
-        case TextureFormat::rgba8_unorm:
+        case TextureFormat::rg8_unorm:
             return TextureFormat::bc5_unorm;
         default:
             return TextureFormat::bc1_srgb;

@@ -411,9 +411,18 @@ CW2_INLINE Floats square_root(Floats values) {
     return roots;
 }
 
+/// What 0.5 n + 0.5 in 8 bits stands for.
+CW2_INLINE Floats component(Floats value) {
+    return value * (2.0f / 255.0f) - 1.0f;
+}
+/// z of a normal.
+CW2_INLINE Floats height(Floats x, Floats y) {
+    return square_root(larger(1.0f - x * x - y * y, Floats{}));
+}
+
 CW2_INLINE double encode_normals(const Place& place, std::byte* out) {
     Ints texels[16];
-    gather<std::uint32_t>(place, texels);
+    gather<std::uint16_t>(place, texels);
     Values decoded[2];
     for (int c = 0; c < 2; ++c) {
         channel(texels, c, decoded[c]);
@@ -424,13 +433,11 @@ CW2_INLINE double encode_normals(const Place& place, std::byte* out) {
     }
     Values errors;
     for (int i = 0; i < 16; ++i) {
-        const auto component = [&](int c) {
-            return to_floats(texels[i] >> 8 * c & 255) * (2.0f / 255.0f) - 1.0f;
-        };
-        const Floats x = decoded[0].of[i] * (2.0f / 255.0f) - 1.0f;
-        const Floats y = decoded[1].of[i] * (2.0f / 255.0f) - 1.0f;
-        const Floats z = square_root(larger(1.0f - x * x - y * y, Floats{}));
-        const Floats off[3]{x - component(0), y - component(1), z - component(2)};
+        const Floats x = component(decoded[0].of[i]);
+        const Floats y = component(decoded[1].of[i]);
+        const Floats true_x = component(to_floats(texels[i] & 255));
+        const Floats true_y = component(to_floats(texels[i] >> 8));
+        const Floats off[3]{x - true_x, y - true_y, height(x, y) - height(true_x, true_y)};
         errors.of[i] = off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
     }
     return sum_inside(errors, place) * (127.5 * 127.5);

@@ -26,8 +26,8 @@ double encode_bc1_row(const PlainLevel& level, std::uint32_t top, std::byte* out
 double encode_bc4_row(const PlainLevel& level, std::uint32_t top, std::uint32_t limit,
                       std::byte* out);
 
-/// Four bytes a texel, 0.5 n + 0.5 in the first three; the error is that of these three with z
-/// rebuilt, in units of a byte that need not be whole.
+/// Two bytes a texel, 0.5 n + 0.5 of x and y; the error is that of three components, z rebuilt, in
+/// units of a byte that need not be whole.
 double encode_bc5_row(const PlainLevel& level, std::uint32_t top, std::byte* out);
 
 }  // namespace bake

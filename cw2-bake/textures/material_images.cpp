@@ -166,7 +166,7 @@ bool is_flat(const Texture& texture) {
         return value == std::byte{127} || value == std::byte{128};
     };
     return texture.width == 1 && texture.height == 1 && near_zero(texture.payload[0]) &&
-           near_zero(texture.payload[1]) && texture.payload[2] == std::byte{255};
+           near_zero(texture.payload[1]);
 }
 
 /// The normals of a normal map or a bump map, if it can be used.
@@ -211,7 +211,7 @@ void make_normals(const ImageRequest& request, ImageCache& images, ImageResult& 
     if (!texels) {
         return;
     }
-    constexpr TextureFormat kFormat = TextureFormat::rgba8_unorm;
+    constexpr TextureFormat kFormat = TextureFormat::rg8_unorm;
     MeanLengths lengths{texels->width, texels->height, {}};
     Texture texture = finish(*request.map, kFormat, *texels,
                              filter_chain(kFormat, *texels, measuring(encode_normal8, lengths)));

@@ -179,7 +179,7 @@ CW2_EVERY_CPU void encode_normal8(std::span<const float> texels, std::byte* out)
     std::array<float, kBlock> x{};
     std::array<float, kBlock> y{};
     std::array<float, kBlock> z{};
-    std::array<std::uint32_t, kBlock> words{};
+    std::array<std::uint16_t, kBlock> words{};
     for (std::size_t begin = 0; begin < texels.size() / 3; begin += kBlock) {
         const std::size_t count = std::min(kBlock, texels.size() / 3 - begin);
         for (std::size_t i = 0; i < count; ++i) {
@@ -190,11 +190,10 @@ CW2_EVERY_CPU void encode_normal8(std::span<const float> texels, std::byte* out)
         for (std::size_t i = 0; i < kBlock; ++i) {
             const float square = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
             const float scale = 0.5f / std::sqrt(std::max(square, kSmallestSquare));
-            const float up = square < kSmallestSquare ? 0.5f : 0.0f;
-            words[i] = rgb_word(unorm8(x[i] * scale + 0.5f), unorm8(y[i] * scale + 0.5f),
-                                unorm8(z[i] * scale + 0.5f + up));
+            words[i] = static_cast<std::uint16_t>(unorm8(x[i] * scale + 0.5f) |
+                                                  unorm8(y[i] * scale + 0.5f) << 8);
         }
-        std::memcpy(out + 4 * begin, words.data(), 4 * count);
+        std::memcpy(out + 2 * begin, words.data(), 2 * count);
     }
 }
 

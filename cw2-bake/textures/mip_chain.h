@@ -78,8 +78,8 @@ std::uint32_t cutoff_byte(float cutoff);
 /// The smallest value that is at or above `cutoff` once it is stored in 8 bits.
 float shown_from(float cutoff);
 
-/// Encoders: values in [0, 1] to r8_unorm; linear RGB to rgba8_srgb; vectors of any length to unit
-/// vectors in rgba8_unorm as 0.5 n + 0.5, no vector as (0, 0, 1). Alpha is 255.
+/// Encoders: values in [0, 1] to r8_unorm; linear RGB to rgba8_srgb, alpha 255; vectors of any
+/// length to x and y of unit vectors in rg8_unorm as 0.5 n + 0.5, no vector as (0, 0, 1).
 void encode_unorm8(std::span<const float> texels, std::byte* out);
 void encode_srgb8(std::span<const float> texels, std::byte* out);
 void encode_normal8(std::span<const float> texels, std::byte* out);

@@ -252,7 +252,8 @@ TexelSource normal_texels(const Image& image, bool xy_only) {
                         for (std::size_t i = 0; i < count; ++i, row += image.channels) {
                             vectors.x[i] = 2.0f * to_float(row[r]) - 1.0f;
                             vectors.y[i] = 2.0f * to_float(row[g]) - 1.0f;
-                            vectors.z[i] = 2.0f * to_float(row[b]) - 1.0f;
+                            // None points into the surface; fillers beside the used part may.
+                            vectors.z[i] = std::abs(2.0f * to_float(row[b]) - 1.0f);
                         }
                         if (xy_only) rebuild_z(vectors);
                         normalise(vectors);

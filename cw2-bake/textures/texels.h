@@ -24,8 +24,8 @@ TexelSource masked_color_texels(const Image& image, const TexelSource& mask, flo
 /// two channels without alpha these are red and green; blue is 0.
 TexelSource stored_texels(const Image& image);
 
-/// Tangent-space vectors, x right and y up: those that an RGB image encodes as 0.5 n + 0.5. With
-/// `xy_only` z is not read, but sqrt(1 - x^2 - y^2).
+/// Unit vectors in tangent space, x right, y up, z at least 0: those that an RGB image encodes as
+/// 0.5 n + 0.5, with |z| for z. With `xy_only` z is not read, but sqrt(1 - x^2 - y^2).
 TexelSource normal_texels(const Image& image, bool xy_only = false);
 
 /// As normal_texels(), from a height map by central differences; heights are those of the channel

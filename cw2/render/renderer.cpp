@@ -86,7 +86,7 @@ PipelineKey pipeline_key(const Draw& draw, Side side, const FrameSettings& setti
     if (settings.one_pipeline) side.view = interop::kViewOfDisplay;
     // What a material has none of makes no other pipeline.
     side.alpha_mask |= !draw.alpha_mask;
-    side.normal_map |= draw.constants.normal_map == interop::kNormalMapAbsent;
+    side.normal_map |= draw.constants.has_normal_map == 0;
     return {.shading = draw.shading,
             .forms = draw.forms,
             .side = side,

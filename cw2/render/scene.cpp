@@ -18,19 +18,10 @@ using mesh_format::Document;
 using mesh_format::MapUse;
 using mesh_format::MaterialRecord;
 using mesh_format::MeshRecord;
-using mesh_format::TextureFormat;
 
 Shading shading_of(const MaterialRecord& material) {
     if (glm::make_vec3(material.emission) != glm::vec3(0.0f)) return Shading::emissive;
     return material.flags & mesh_format::kAlphaMask ? Shading::alpha_mask : Shading::opaque;
-}
-
-std::uint32_t normal_map_of(const Document& document, const MaterialRecord& material) {
-    if (material.textures[MapUse::normal] == mesh_format::kNoTexture)
-        return interop::kNormalMapAbsent;
-    return document.textures[material.textures[MapUse::normal]].format == TextureFormat::bc5_unorm
-               ? interop::kNormalMapXy
-               : interop::kNormalMapXyz;
 }
 
 interop::DrawConstants constants_of(const Document& document, const MeshRecord& mesh,
@@ -45,7 +36,7 @@ interop::DrawConstants constants_of(const Document& document, const MeshRecord& 
     constants.roughness = material.roughness;
     constants.metalness = material.metalness;
     constants.alpha_cutoff = material.alpha_cutoff;
-    constants.normal_map = normal_map_of(document, material);
+    constants.has_normal_map = material.textures[MapUse::normal] != mesh_format::kNoTexture;
     constants.normal_scale = material.normal_scale;
     constants.back_normals = material.flags & mesh_format::kFlipBackNormals ? -1.0f : 1.0f;
     constants.material = mesh.material;

@@ -23,7 +23,7 @@ using mesh_format::TextureRecord;
 
 /// In the formats of what they stand for: so no kind of image is added to the scene's.
 constexpr TextureFormat kWhiteFormats[] = {TextureFormat::rgba8_srgb, TextureFormat::r8_unorm,
-                                           TextureFormat::rgba8_unorm};
+                                           TextureFormat::rg8_unorm};
 
 std::size_t white_for(MapUse use) {
     switch (use) {
@@ -52,8 +52,8 @@ VkFormat vulkan_format(TextureFormat format, bool decoded) {
             return decoded ? VK_FORMAT_R8G8_UNORM : VK_FORMAT_BC5_UNORM_BLOCK;
         case TextureFormat::r8_unorm:
             return VK_FORMAT_R8_UNORM;
-        case TextureFormat::rgba8_unorm:
-            return VK_FORMAT_R8G8B8A8_UNORM;
+        case TextureFormat::rg8_unorm:
+            return VK_FORMAT_R8G8_UNORM;
         case TextureFormat::rgba8_srgb:
             return VK_FORMAT_R8G8B8A8_SRGB;
     }
@@ -169,12 +169,15 @@ std::set<std::uint32_t> SceneTextures::merge_maps(const Document& document) {
 }
 
 bool SceneTextures::is_decoded(const Texture& texture) const {
-    return settings_.decode_blocks && mesh_format::block_extent(texture.record.format) > 1;
+    return settings_.decode_blocks && !texture.merged &&
+           mesh_format::block_extent(texture.record.format) > 1;
 }
 
 ImageSettings SceneTextures::settings_of(const Device& device, const Texture& texture) const {
     const TextureRecord& record = texture.record;
-    ImageSettings settings{.format = vulkan_format(record.format, is_decoded(texture)),
+    ImageSettings settings{.format = texture.merged
+                                         ? VK_FORMAT_R8G8B8A8_UNORM
+                                         : vulkan_format(record.format, is_decoded(texture)),
                            .extent = {record.width, record.height},
                            .mip_count = record.mip_count,
                            .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
@@ -264,6 +267,7 @@ void SceneTextures::write_level(const Document& document, const Texture& texture
 }
 
 TexelBlock SceneTextures::texel_block(const Texture& texture) const {
+    if (texture.merged) return {1, 4};
     const TextureFormat format = texture.record.format;
     return is_decoded(texture)
                ? TexelBlock{1, mesh_format::decoded_texel_bytes(format)}

@@ -107,9 +107,6 @@ std::optional<MergedMaps> merged_maps(const mesh_format::Document& document,
                                       const mesh_format::MaterialRecord& material) {
     const MergedMaps maps{material.textures[MapUse::normal], material.textures[MapUse::roughness],
                           material.textures[MapUse::metalness]};
-    if (maps.normal != kNoTexture &&
-        document.textures[maps.normal].format != TextureFormat::bc5_unorm)
-        return std::nullopt;
     const TextureRecord whole = record_of(document, maps);
     for (const std::uint32_t map : {maps.normal, maps.roughness, maps.metalness}) {
         if (map == kNoTexture || is_one_texel(document.textures[map])) continue;
@@ -126,7 +123,6 @@ TextureRecord record_of(const mesh_format::Document& document, const MergedMaps&
     for (const std::uint32_t map : {maps.normal, maps.roughness, maps.metalness}) {
         if (map != kNoTexture && is_one_texel(whole)) whole = document.textures[map];
     }
-    whole.format = TextureFormat::rgba8_unorm;
     return whole;
 }
 

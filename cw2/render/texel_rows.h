@@ -36,16 +36,15 @@ struct MergedMaps {
     auto operator<=>(const MergedMaps&) const = default;
 };
 
-/// Nothing where maps of more than a texel differ in size or in what happens at their borders, or
-/// where the normals are not two-channel ones.
+/// Nothing where maps of more than a texel differ in size or in what happens at their borders.
 std::optional<MergedMaps> merged_maps(const mesh_format::Document& document,
                                       const mesh_format::MaterialRecord& material);
 
-/// What the merged image is as a texture: 8 bits a channel, x and y of the normal, roughness,
-/// metalness; 255 for what is absent.
+/// Size, levels and flags of the merged image.
 mesh_format::TextureRecord record_of(const mesh_format::Document& document, const MergedMaps& maps);
 
-/// Rows as of decode_rows().
+/// Rows as of decode_rows(), 8 bits a channel: x and y of the normal, roughness, metalness; 255 for
+/// what is absent.
 void merge_rows(const mesh_format::Document& document, const MergedMaps& maps, const Rows& rows);
 
 }  // namespace cw2
