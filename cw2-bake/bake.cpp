@@ -126,7 +126,7 @@ std::vector<UvBudget> uv_budgets(const TextureSet& textures) {
             if (index == kNoTexture) continue;
             const Texture& texture = textures.textures[index];
             longest = std::max({longest, texture.width, texture.height});
-            budget.shiftable = budget.shiftable && !texture.clamp;
+            budget.shiftable = budget.shiftable && texture.flags == 0;
         }
         if (longest > 0) budget.texels = longest;
         budgets.push_back(budget);
@@ -184,7 +184,7 @@ Tables make_tables(const std::vector<SourceMaterial>& materials, const TextureSe
         tables.textures.push_back(
             {.name = tables.add(texture.name),
              .format = texture.format,
-             .flags = texture.clamp ? mesh_format::kClampToEdge : 0u,
+             .flags = texture.flags,
              .width = texture.width,
              .height = texture.height,
              .mip_count = mesh_format::full_mip_count(texture.width, texture.height),

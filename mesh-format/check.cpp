@@ -189,7 +189,8 @@ void check_texture(const Checker& check, const Document& document, std::size_t i
     };
     require(valid_text(document, texture.name), "its name lies outside the strings");
     require(texture.format <= TextureFormat::bc5_unorm, "unknown format");
-    require((texture.flags & ~std::uint32_t{kClampToEdge}) == 0, "unknown flags");
+    require((texture.flags & ~std::uint32_t{kClampToEdge | kHiddenBeyond}) == 0, "unknown flags");
+    require(texture.flags != kHiddenBeyond, "hides what is beyond it, but does not clamp");
     require(texture.width > 0 && texture.width <= kMaxTextureSize && texture.height > 0 &&
                 texture.height <= kMaxTextureSize,
             "its size is out of range");

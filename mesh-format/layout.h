@@ -279,6 +279,9 @@ inline constexpr PerMap<MapInfo> kMaps{{
 
 enum TextureFlags : std::uint32_t {
     kClampToEdge = 1,  ///< otherwise repeat
+    /// Beside the other, of an alpha mask that hides all along its edges: it is 0 beyond them. The
+    /// edges of small levels have means of what is inside, which would go on without end.
+    kHiddenBeyond = 2,
 };
 
 /// A texture's payload is its complete mip chain, largest level first, each level's rows (of texels

@@ -88,6 +88,12 @@ constexpr Place place(std::size_t i) {
     return {n * 3242174889u + 0x8000'0000u, n * 2447445414u + 0x8000'0000u};
 }
 
+/// In the place of a texel: beyond the edge, where there is 0.
+constexpr std::uint32_t kNowhere = 0xFFFF'FFFF;
+
+/// What is beyond a texture's edges.
+enum class Beyond { opposite_edge, same_edge, nothing };
+
 /// The texels beside a place along one axis.
 struct Span {
     std::uint32_t first;
@@ -95,13 +101,17 @@ struct Span {
     float share;
 };
 
-Span span_at(std::uint32_t place, std::uint32_t extent, bool clamp) {
+Span span_at(std::uint32_t place, std::uint32_t extent, Beyond beyond) {
     // In 2^-32 of a texel, from the centre of the one before the first.
     const std::uint64_t at = std::uint64_t{place} * extent + 0x8000'0000u;
     const auto before = static_cast<std::uint32_t>(at >> 32);
     const float share = static_cast<float>(static_cast<std::uint32_t>(at)) * 0x1p-32f;
-    if (before == 0) return {clamp ? 0 : extent - 1, 0, share};
-    if (before == extent) return {extent - 1, clamp ? extent - 1 : 0, share};
+    const std::uint32_t last = extent - 1;
+    const auto outside = [&](std::uint32_t edge, std::uint32_t opposite) {
+        return beyond == Beyond::nothing ? kNowhere : beyond == Beyond::same_edge ? edge : opposite;
+    };
+    if (before == 0) return {outside(0, last), 0, share};
+    if (before == extent) return {last, outside(last, 0), share};
     return {before - 1, before, share};
 }
 
@@ -134,6 +144,7 @@ std::vector<std::byte> through_blocks(const std::vector<std::byte>& bytes, std::
 MaskCoverage::MaskCoverage(std::span<const std::byte> texels, std::uint32_t width,
                            std::uint32_t height, const MaskUse& use)
     : use_(use),
+      hidden_beyond_(use.clamp && hides_its_edges(texels, width, height, use.cutoff)),
       threshold_(shown_from(use.cutoff)),
       places_(std::clamp(texels.size(), kLeastPlaces, kMostPlaces)),
       finer_(places_),
@@ -150,15 +161,19 @@ MaskCoverage::MaskCoverage(std::span<const std::byte> texels, std::uint32_t widt
 
 template <typename TexelAt>
 void MaskCoverage::gather(const TexelAt& texel_at, std::uint32_t width, std::uint32_t height) {
+    const Beyond beyond = hidden_beyond_ ? Beyond::nothing
+                          : use_.clamp   ? Beyond::same_edge
+                                         : Beyond::opposite_edge;
+    const auto at = [&](std::uint32_t x, std::uint32_t y) {
+        return x == kNowhere || y == kNowhere ? 0.0f : texel_at(std::size_t{y} * width + x);
+    };
     for (std::size_t i = 0; i < places_; ++i) {
-        const Span x = span_at(place(i).x, width, use_.clamp);
-        const Span y = span_at(place(i).y, height, use_.clamp);
-        const std::size_t above = std::size_t{y.first} * width;
-        const std::size_t below = std::size_t{y.second} * width;
-        corners_.texels[0][i] = texel_at(above + x.first);
-        corners_.texels[1][i] = texel_at(above + x.second);
-        corners_.texels[2][i] = texel_at(below + x.first);
-        corners_.texels[3][i] = texel_at(below + x.second);
+        const Span x = span_at(place(i).x, width, beyond);
+        const Span y = span_at(place(i).y, height, beyond);
+        corners_.texels[0][i] = at(x.first, y.first);
+        corners_.texels[1][i] = at(x.second, y.first);
+        corners_.texels[2][i] = at(x.first, y.second);
+        corners_.texels[3][i] = at(x.second, y.second);
         corners_.across[i] = x.share;
         corners_.down[i] = y.share;
     }

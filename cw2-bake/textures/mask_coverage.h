@@ -66,6 +66,7 @@ class MaskCoverage {
     bool is_near(const Miss& miss, std::size_t places) const;
 
     MaskUse use_;
+    bool hidden_beyond_;  ///< the edges, where it clamps
     float threshold_;
     std::size_t places_;          ///< in use; the first few of them are spread evenly, too
     double share_ = 0.0;          ///< of level 0 that is shown

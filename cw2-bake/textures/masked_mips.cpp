@@ -124,6 +124,18 @@ float shown_from(float cutoff) {
     return (static_cast<float>(cutoff_byte(cutoff)) - 0.5f) / 255.0f;
 }
 
+bool hides_its_edges(std::span<const std::byte> texels, std::uint32_t width, std::uint32_t height,
+                     float cutoff) {
+    const auto limit = static_cast<std::byte>(cutoff_byte(cutoff));
+    const auto hides = [&](std::size_t texel) { return texels[texel] < limit; };
+    const std::size_t row = width;
+    for (std::size_t x = 0; x < row; ++x)
+        if (!hides(x) || !hides((height - 1) * row + x)) return false;
+    for (std::size_t y = 0; y < height; ++y)
+        if (!hides(y * row) || !hides(y * row + row - 1)) return false;
+    return true;
+}
+
 std::vector<std::byte> filter_mask(const TexelSource& source, const MaskUse& use) {
     constexpr TextureFormat kFormat = TextureFormat::r8_unorm;
     std::vector<std::byte> payload(

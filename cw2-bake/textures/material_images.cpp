@@ -48,7 +48,7 @@ void collapse_constant(Texture& texture) {
     }
     texture.width = 1;
     texture.height = 1;
-    texture.clamp = false;
+    texture.flags = 0;
     texture.payload.resize(mesh_format::mip_chain_bytes(texture.format, 1, 1));
     std::fill(texture.payload.begin() + static_cast<std::ptrdiff_t>(step), texture.payload.end(),
               std::byte{0});
@@ -59,7 +59,7 @@ Texture finish(const TextureMap& map, TextureFormat format, const TexelSource& s
                std::vector<std::byte> payload) {
     Texture texture{.name = map.file.filename().string(),
                     .format = format,
-                    .clamp = map.clamp,
+                    .flags = map.clamp ? mesh_format::kClampToEdge : 0u,
                     .width = source.width,
                     .height = source.height,
                     .payload = std::move(payload)};
@@ -135,6 +135,10 @@ void make_surface(const ImageRequest& request, TextureMode mode, ImageCache& ima
                           .blocks = mode == TextureMode::bc};
         result.alpha_mask = finish(*mask->map, TextureFormat::r8_unorm, mask->texels,
                                    filter_mask(mask->texels, use));
+        Texture& texture = *result.alpha_mask;
+        if (texture.flags != 0 &&
+            hides_its_edges(texture.payload, texture.width, texture.height, use.cutoff))
+            texture.flags |= mesh_format::kHiddenBeyond;
     }
     if (!color) {
         return;
@@ -268,7 +272,7 @@ void make_roughness(const ImageRequest& request, ImageCache& images, ImageResult
             const TextureMap& map = image ? *request.map : *request.relief;
             result.texture = Texture{.name = map.file.filename().string(),
                                      .format = TextureFormat::r8_unorm,
-                                     .clamp = map.clamp,
+                                     .flags = map.clamp ? mesh_format::kClampToEdge : 0u,
                                      .width = alphas.width,
                                      .height = alphas.height,
                                      .payload = std::move(chain.payload)};

@@ -57,7 +57,7 @@ std::vector<std::byte> filter_chain(mesh_format::TextureFormat format, const Tex
 /// How an alpha mask will be sampled.
 struct MaskUse {
     float cutoff;         ///< what is below is hidden
-    bool clamp = false;   ///< the texture does not repeat
+    bool clamp = false;   ///< the texture does not repeat; beyond hidden edges it is 0
     bool blocks = false;  ///< it will be stored in blocks, as compress_to_blocks() makes them
 };
 
@@ -65,6 +65,11 @@ struct MaskUse {
 /// at `cutoff`; see mask_coverage.h. After Castano, "Computing alpha mipmaps", 2010, who scales a
 /// level until as many of its texels are shown; between them small leaves would vanish.
 std::vector<std::byte> filter_mask(const TexelSource& source, const MaskUse& use);
+
+/// Whether all that lies along the edges of a mask's level 0, which `texels` begins with, is
+/// hidden.
+bool hides_its_edges(std::span<const std::byte> texels, std::uint32_t width, std::uint32_t height,
+                     float cutoff);
 
 /// The payload of the base colour (rgba8_srgb) under an alpha mask. `source` has four channels:
 /// linear red, green and blue, and 1; or four times 0 where the mask hides the texel. At least one

@@ -121,7 +121,7 @@ std::optional<Texture> EarlierBake::texture(std::uint32_t index, const std::stri
     if (!checked_[index].is_whole) return std::nullopt;
     return Texture{.name = name,
                    .format = record.format,
-                   .clamp = (record.flags & mesh_format::kClampToEdge) != 0,
+                   .flags = record.flags,
                    .width = record.width,
                    .height = record.height,
                    .psnr = record.psnr,

@@ -23,7 +23,7 @@ enum class TextureMode {
 struct Texture {
     std::string name;
     mesh_format::TextureFormat format{};
-    bool clamp = false;
+    std::uint32_t flags = 0;  ///< mesh_format::TextureFlags
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     float psnr = 0.0f;  ///< as in mesh_format::TextureRecord

@@ -137,8 +137,8 @@ class Shelf {
 
  private:
     static bool equal(const Texture& a, const Texture& b) {
-        return std::tie(a.format, a.clamp, a.width, a.height, a.psnr) ==
-                   std::tie(b.format, b.clamp, b.width, b.height, b.psnr) &&
+        return std::tie(a.format, a.flags, a.width, a.height, a.psnr) ==
+                   std::tie(b.format, b.flags, b.width, b.height, b.psnr) &&
                (a.bytes().data() == b.bytes().data() || std::ranges::equal(a.bytes(), b.bytes()));
     }
 

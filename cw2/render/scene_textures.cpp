@@ -82,7 +82,8 @@ Sampler make_sampler(const Device& device, VkSamplerAddressMode mode, float anis
                                    .addressModeW = mode,
                                    .anisotropyEnable = anisotropy > 1.0f,
                                    .maxAnisotropy = anisotropy,
-                                   .maxLod = VK_LOD_CLAMP_NONE};
+                                   .maxLod = VK_LOD_CLAMP_NONE,
+                                   .borderColor = VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK};
     VkSampler sampler = VK_NULL_HANDLE;
     check(vkCreateSampler(device.get(), &info, nullptr, &sampler), "vkCreateSampler");
     return {device.get(), sampler};
@@ -112,6 +113,8 @@ SceneTextures::SceneTextures(const Device& device, const Document& document,
       merged_of_material_(document.materials.size()),
       repeat_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, settings.anisotropy)),
       clamp_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, settings.anisotropy)),
+      hidden_beyond_(
+          make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, settings.anisotropy)),
       one_texel_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, 1.0f)) {
     std::set<std::uint32_t> needed;
     if (settings.few_kinds) needed = merge_maps(document);
@@ -329,8 +332,11 @@ VkDescriptorImageInfo SceneTextures::descriptor(const Document& document, std::s
     const ImageView& view = merged != 0 && use != MapUse::normal
                                 ? texture.scalar_views[use == MapUse::metalness]
                                 : texture.view;
-    const bool clamps = (texture.record.flags & mesh_format::kClampToEdge) != 0;
-    const Sampler& sampler = texture.is_one_texel ? one_texel_ : clamps ? clamp_ : repeat_;
+    const std::uint32_t flags = texture.record.flags;
+    const Sampler& sampler = texture.is_one_texel                 ? one_texel_
+                             : flags & mesh_format::kHiddenBeyond ? hidden_beyond_
+                             : flags & mesh_format::kClampToEdge  ? clamp_
+                                                                  : repeat_;
     return {sampler.get(), view.get(),
             texture.address ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 }

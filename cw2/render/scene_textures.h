@@ -80,6 +80,7 @@ class SceneTextures {
     std::vector<std::size_t> merged_of_material_;  ///< index of textures_, 0 where there is none
     Sampler repeat_;
     Sampler clamp_;
+    Sampler hidden_beyond_;
     Sampler one_texel_;  ///< not anisotropic: where UVs are all the same Mesa 25 would give black
 };
 

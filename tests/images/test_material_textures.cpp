@@ -211,7 +211,7 @@ TEST(TextureSets, HoldEqualTexturesOnceInOrderOfFirstUse) {
     EXPECT_EQ(set.materials[0].textures[MapUse::metalness], 0u);
     EXPECT_EQ(set.materials[1].textures[MapUse::roughness], 1u);
     EXPECT_EQ(set.materials[1].textures[MapUse::metalness], 2u);
-    EXPECT_TRUE(set.textures[2].clamp);
+    EXPECT_EQ(set.textures[2].flags, mesh_format::kClampToEdge);
     EXPECT_EQ(set.materials[0].textures[MapUse::base_color], kNoTexture);
 }
 

@@ -182,4 +182,35 @@ TEST(Coverage, OfChainsStaysWithinFivePercentAtEveryDistanceAndSlant) {
     expect_coverage(chains(), "bc", 8);
 }
 
+/// A plane of many repeats, seen at a grazing angle, on which the one copy of the mask is not.
+TEST(Coverage, OfAClampedMaskBeyondItsEdgesIsThatOfItsEdges) {
+    for (const double edge : {0.0, 1.0}) {
+        const TemporaryFolder folder;
+        write_picture(folder / "mask.png", painted(kSize, kSize, 1, [&](int x, int y) {
+                          const bool inside = std::min(x, y) >= 16 && std::max(x, y) < kSize - 16;
+                          return std::vector{inside ? 1.0 : edge};
+                      }));
+        {
+            SceneWriter scene(folder.path(), "plane");
+            scene.material("mask", {"Kd 1 1 1", "map_d -clamp on mask.png"});
+            const auto corner = [](double x, double z) {
+                return Corner{
+                    {x, 0.0, z}, {2.0 + 0.1 * (x + 50.0), 2.0 + 0.1 * (z + 50.0)}, {0.0, 1.0, 0.0}};
+            };
+            scene.polygon({corner(-50, 50), corner(50, 50), corner(50, -50), corner(-50, -50)});
+        }
+        const std::filesystem::path scene = bake_scene(folder / "plane.obj");
+        for (const char* samples : {"1", "4"}) {
+            const Picture picture =
+                draw_scene(scene, ".exr",
+                           {"--size", "320x180", "--samples", samples, "--fov", "40",
+                            "--camera-position", "0,2,60", "--camera-target", "0,0,0"});
+            double shown = 0.0;
+            for (std::size_t i = 3; i < picture.samples.size(); i += 4) shown += picture.samples[i];
+            EXPECT_EQ(shown > 1000.0, edge == 1.0) << shown;
+            EXPECT_EQ(shown > 0.0, edge == 1.0) << shown;
+        }
+    }
+}
+
 }  // namespace

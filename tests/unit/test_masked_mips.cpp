@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 #include <tuple>
 
@@ -66,12 +67,14 @@ struct Sampled {
     std::uint32_t width;
     std::uint32_t height;
     bool clamp;
+    bool is_hidden_beyond = false;
 
     double at(double u, double v) const {
         const auto place = [this](double at, std::uint32_t extent) {
             const double first = std::floor(at * extent - 0.5);
-            const auto inside = [&](double index) {
+            const auto inside = [&](double index) -> std::optional<std::uint32_t> {
                 const double last = extent - 1.0;
+                if (is_hidden_beyond && (index < 0.0 || index > last)) return std::nullopt;
                 const double repeated = index < 0.0 ? last : index > last ? 0.0 : index;
                 return static_cast<std::uint32_t>(clamp ? std::clamp(index, 0.0, last) : repeated);
             };
@@ -79,8 +82,8 @@ struct Sampled {
         };
         const auto [x0, x1, fx] = place(u, width);
         const auto [y0, y1, fy] = place(v, height);
-        const auto value = [this](std::uint32_t x, std::uint32_t y) {
-            return std::to_integer<int>(texels[y * width + x]) / 255.0;
+        const auto value = [this](const auto& x, const auto& y) {
+            return x && y ? std::to_integer<int>(texels[*y * width + *x]) / 255.0 : 0.0;
         };
         return std::lerp(std::lerp(value(x0, y0), value(x1, y0), fx),
                          std::lerp(value(x0, y1), value(x1, y1), fx), fy);
@@ -103,12 +106,12 @@ double shown_share(const Sampled& finer, const Sampled& coarser, double blend, d
 }
 
 std::vector<Sampled> levels_of(const std::vector<std::byte>& payload, std::uint32_t width,
-                               std::uint32_t height, bool clamp) {
+                               std::uint32_t height, bool clamp, bool is_hidden_beyond = false) {
     std::vector<Sampled> levels;
     const std::byte* texels = payload.data();
     for (std::uint32_t i = 0; i < mesh_format::full_mip_count(width, height); ++i) {
-        levels.push_back(
-            {texels, mesh_format::mip_extent(width, i), mesh_format::mip_extent(height, i), clamp});
+        levels.push_back({texels, mesh_format::mip_extent(width, i),
+                          mesh_format::mip_extent(height, i), clamp, is_hidden_beyond});
         texels += mesh_format::mip_bytes(TextureFormat::r8_unorm, width, height, i);
     }
     return levels;
@@ -135,8 +138,10 @@ void expect_coverage(const Image& image, const bake::MaskUse& use, double tolera
     ASSERT_TRUE(std::equal(image.samples.begin(), image.samples.end(), payload.begin()))
         << "level 0 is not to change";
     SCOPED_TRACE(testing::Message() << image.width << " texels wide, cutoff " << use.cutoff);
-    expect_coverage(levels_of(payload, image.width, image.height, use.clamp), use.cutoff,
-                    tolerance);
+    const bool hidden_beyond =
+        use.clamp && bake::hides_its_edges(payload, image.width, image.height, use.cutoff);
+    expect_coverage(levels_of(payload, image.width, image.height, use.clamp, hidden_beyond),
+                    use.cutoff, tolerance);
 }
 
 TEST(AlphaMask, ShowsTheSameShareAtAllLevelsAndBetweenThem) {
@@ -156,6 +161,30 @@ TEST(AlphaMask, ClampedShowsTheSameShareAtAllLevels) {
     // Shown along one border only, whose other side must not count.
     expect_coverage(grey(256, 256, [](auto x, auto) { return x < 6 ? 1.0 : 0.0; }),
                     {.cutoff = 0.5f, .clamp = true}, 0.1);
+}
+
+TEST(AlphaMask, HiddenAllAlongItsEdgesIsHiddenBeyondThem) {
+    const auto hides = [](const Image& image) {
+        return bake::hides_its_edges(image.samples, image.width, image.height, 0.5f);
+    };
+    const Image framed = grey(
+        64, 48, [](auto x, auto y) { return x > 0 && y > 0 && x < 63 && y < 47 ? 1.0 : 0.49; });
+    EXPECT_TRUE(hides(framed));
+    for (const std::size_t texel : {0, 63, 20, 47 * 64 + 20, 20 * 64, 20 * 64 + 63}) {
+        Image open = framed;
+        open.samples[texel] = std::byte{128};
+        EXPECT_FALSE(hides(open)) << texel;
+    }
+    // Though all texels of a small level are at an edge, and one is all of the smallest.
+    const Image disc =
+        grey(64, 64, [](auto x, auto y) { return 0.5 + 20.0 - std::hypot(x - 31.5, y - 31.5); });
+    const std::vector<std::byte> payload = bake::filter_mask(
+        bake::scalar_texels(disc, bake::Channel::r), {.cutoff = 0.5f, .clamp = true});
+    const auto levels = levels_of(payload, 64, 64, true, true);
+    const double truth = shown_share(levels[0], levels[0], 0.0, 0.5);
+    for (const Sampled& level : levels) {
+        EXPECT_NEAR(shown_share(level, level, 0.0, 0.5) / truth, 1.0, 0.1) << level.width;
+    }
 }
 
 /// The payload that a mask in blocks stands for.
