@@ -58,10 +58,15 @@ class OffscreenTarget {
           pool_(make_command_pool(device)),
           commands_(allocate_commands(device, pool_.get())) {}
 
+    /// See Averager::shown().
+    std::vector<TriangleCulling::Shown> shown(const Scene& scene, const FrameSettings& settings) {
+        return averager_.shown(scene, settings, extent_, samples_);
+    }
+
     /// Has the device compile what pictures of the scene will need, and waits for it.
     void rehearse(const Scene& scene, const FrameSettings& settings) {
         begin_commands(commands_);
-        averager_.rehearse(commands_, 0, scene, settings, extent_);
+        averager_.rehearse(commands_, 0, scene, settings, extent_, samples_);
         submit_and_wait(device_, commands_);
     }
 
@@ -295,25 +300,30 @@ void print_pixel(const Device& device, const Layouts& layouts, const Scene& scen
         json_of(pixel, pick, pick ? scene.material_names()[pick->material] : std::string()));
 }
 
-/// The camera of all pictures of a run, nothing where it moves.
-std::optional<Camera> only_camera(const Options& options, const FrameSettings& settings,
-                                  const Bounds& bounds) {
+/// What all pictures of a run show, but for the light, if the camera does not move.
+std::optional<FrameSettings> only_view(const Options& options, const FrameSettings& settings,
+                                       const Bounds& bounds) {
     const bool turns = options.frames ? options.frames->size() > 1 && options.orbit != Orbit::light
                                       : options.bench_pictures && options.orbit == Orbit::camera;
     if (turns) return std::nullopt;
-    if (!options.frames) return settings.camera;
-    return turned(options, settings, options.frames->first, options.frames->count, bounds).camera;
+    if (!options.frames) return settings;
+    return turned(options, settings, options.frames->first, options.frames->count, bounds);
 }
 
 /// From which levels on the pictures of a run need the textures; empty for all.
 std::vector<std::uint32_t> needed_levels(const Options& options, const FrameSettings& settings,
-                                         const TextureSettings& textures, const SceneFile& file) {
-    const std::optional<Camera> camera = only_camera(options, settings, file.bounds);
-    if (!camera) return {};
-    return first_touched_levels(file, *camera,
+                                         const TextureSettings& textures, const SceneFile& file,
+                                         const Scene& scene, OffscreenTarget* target) {
+    const std::optional<FrameSettings> view = only_view(options, settings, file.bounds);
+    if (!view) return {};
+    std::vector<TriangleCulling::Shown> shown;
+    // A pixel that is read is sampled where no frame may be.
+    if (target && !options.pixel) shown = target->shown(scene, *view);
+    return first_touched_levels(file.document, file.bounds, view->camera,
                                 {.extent = {options.size.width, options.size.height},
                                  .lod_bias = pixel_sample(0, samples_of(options)).lod_bias,
-                                 .anisotropy = textures.anisotropy});
+                                 .anisotropy = textures.anisotropy},
+                                shown);
 }
 
 /// Returns the statistics of what was drawn, empty for nothing.
@@ -324,16 +334,17 @@ std::string render(const Device& device, const Options& options, SceneFile file,
     const FrameSettings settings = settings_for(kind, options, file.start, file.bounds);
     const TextureSettings textures = texture_settings(options, device);
     const Layouts layouts(device);
-    Scene scene(device, layouts, file, textures, needed_levels(options, settings, textures, file));
+    Scene scene(device, file);
     std::optional<OffscreenTarget> target;
-    std::future<void> rehearsal;
     const bool draws = kind || options.bench_pictures;
-    if (draws) {
-        target.emplace(device, layouts, options, kind.value_or(ImageKind::png));
-        // On CPUs shaders are compiled when they first draw: beside the decoding of textures.
-        if (device.is_cpu())
-            rehearsal = std::async(std::launch::async, [&] { target->rehearse(scene, settings); });
-    }
+    if (draws) target.emplace(device, layouts, options, kind.value_or(ImageKind::png));
+    scene.make_textures(
+        device, layouts, file, textures,
+        needed_levels(options, settings, textures, file, scene, target ? &*target : nullptr));
+    std::future<void> rehearsal;
+    // On CPUs shaders are compiled when they first draw: beside the decoding of textures.
+    if (draws && device.is_cpu())
+        rehearsal = std::async(std::launch::async, [&] { target->rehearse(scene, settings); });
     scene.write_textures(device, file);
     file = {};
     if (rehearsal.valid()) rehearsal.get();

@@ -93,40 +93,52 @@ Averager::Averager(const Device& device, const Layouts& layouts, const ShaderCod
       layout_(make_layout(device, set_layout_.get())),
       add_(make_pipeline(device, layout_.get(), add_frame_comp)),
       encode_(make_pipeline(device, layout_.get(), encode_mean_comp)),
-      pool_(make_descriptor_pool(device, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 3, 1)),
-      set_(allocate_set(device, pool_.get(), set_layout_.get())) {}
+      pool_(make_descriptor_pool(device, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 6, 2)),
+      mean_set_(allocate_set(device, pool_.get(), set_layout_.get())),
+      frame_set_(allocate_set(device, pool_.get(), set_layout_.get())) {}
 
 void Averager::fit(VkExtent2D extent) {
     if (extent.width == extent_.width && extent.height == extent_.height) return;
     // Frames of the old size may still be in flight.
     check(device_.wait_idle(), "vkDeviceWaitIdle");
-    constexpr VkImageUsageFlags kStored = VK_IMAGE_USAGE_STORAGE_BIT;
+    constexpr VkImageUsageFlags kStored =
+        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     frame_ = make_image(device_, {.format = kColors,
                                   .extent = extent,
                                   .usage = kStored | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
-    mean_ = make_image(
-        device_,
-        {.format = kColors, .extent = extent, .usage = kStored | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
-    bytes_ = make_image(device_, {.format = VK_FORMAT_R8G8B8A8_UNORM,
-                                  .extent = extent,
-                                  .usage = kStored | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    bytes_ = make_image(device_,
+                        {.format = VK_FORMAT_R8G8B8A8_UNORM, .extent = extent, .usage = kStored});
+    mean_ = {};
     device_.name(frame_.handle.get(), "frame");
-    device_.name(mean_.handle.get(), "mean of frames");
     device_.name(bytes_.handle.get(), "bytes of the picture");
-    const std::array views{frame_.view.get(), mean_.view.get(), bytes_.view.get()};
+    write_set(frame_set_, frame_.view.get());
+    extent_ = extent;
+}
+
+void Averager::make_mean() {
+    if (mean_.handle.get()) return;
+    mean_ = make_image(device_,
+                       {.format = kColors,
+                        .extent = extent_,
+                        .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT});
+    device_.name(mean_.handle.get(), "mean of frames");
+    write_set(mean_set_, mean_.view.get());
+}
+
+void Averager::write_set(VkDescriptorSet set, VkImageView mean) const {
+    const std::array views{frame_.view.get(), mean, bytes_.view.get()};
     std::array<VkDescriptorImageInfo, views.size()> images;
     std::array<VkWriteDescriptorSet, views.size()> writes;
     for (std::uint32_t i = 0; i < views.size(); ++i) {
         images[i] = {VK_NULL_HANDLE, views[i], VK_IMAGE_LAYOUT_GENERAL};
         writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                     .dstSet = set_,
+                     .dstSet = set,
                      .dstBinding = i,
                      .descriptorCount = 1,
                      .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
                      .pImageInfo = &images[i]};
     }
     vkUpdateDescriptorSets(device_.get(), writes.size(), writes.data(), 0, nullptr);
-    extent_ = extent;
 }
 
 void Averager::dispatch(VkCommandBuffer commands, VkPipeline pipeline, VkExtent2D extent,
@@ -135,28 +147,29 @@ void Averager::dispatch(VkCommandBuffer commands, VkPipeline pipeline, VkExtent2
         return (pixels + interop::kAverageGroup - 1) / interop::kAverageGroup;
     };
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1, &set_, 0,
-                            nullptr);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1,
+                            is_frame_ ? &frame_set_ : &mean_set_, 0, nullptr);
     vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof constants,
                        &constants);
     vkCmdDispatch(commands, groups(extent.width), groups(extent.height), 1);
 }
 
-FrameTarget Averager::target() const {
+FrameTarget Averager::target(VkExtent2D extent, std::uint32_t index, std::uint32_t count) const {
     return {.image = frame_.handle.get(),
             .view = frame_.view.get(),
-            .extent = extent_,
-            .available_at = kComputed.stages,
-            .after = kComputed};
+            .extent = extent,
+            .available_at = kComputed.stages | kCopied.stages,
+            .after = kComputed,
+            .sample = pixel_sample(index, count)};
 }
 
 void Averager::add_to_mean(VkCommandBuffer commands, VkExtent2D extent,
                            const interop::AverageConstants& constants) {
+    make_mean();
     // Earlier contents go where a mean starts; their readers have to be done all the same.
-    ImageUse before = mean_use_;
+    ImageUse before = picture_use_;
     if (constants.starts) before.layout = VK_IMAGE_LAYOUT_UNDEFINED;
     image_barrier(commands, mean_.handle.get(), VK_IMAGE_ASPECT_COLOR_BIT, before, kComputed);
-    mean_use_ = kComputed;
     dispatch(commands, add_.get(), extent, constants);
 }
 
@@ -164,28 +177,40 @@ void Averager::add(VkCommandBuffer commands, std::uint32_t slot, const Scene& sc
                    const FrameSettings& settings, VkExtent2D extent, std::uint32_t index,
                    std::uint32_t count, bool clamps) {
     fit(extent);
-    FrameTarget target = this->target();
-    target.sample = pixel_sample(index, count);
-    renderer_.record(commands, slot, scene, target, settings);
-    add_to_mean(
-        commands, extent,
-        {.weight = 1.0f / static_cast<float>(count), .starts = index == 0, .clamps = clamps});
+    renderer_.record(commands, slot, scene, target(extent, index, count), settings);
+    is_frame_ = count == 1;
+    if (!is_frame_)
+        add_to_mean(
+            commands, extent,
+            {.weight = 1.0f / static_cast<float>(count), .starts = index == 0, .clamps = clamps});
+    picture_use_ = kComputed;
 }
 
 void Averager::rehearse(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
-                        const FrameSettings& settings, VkExtent2D extent) {
+                        const FrameSettings& settings, VkExtent2D extent, std::uint32_t count) {
     fit(extent);
-    FrameTarget target = this->target();
+    FrameTarget target = this->target(extent, 0, count);
     target.rehearses = true;
     renderer_.record(commands, slot, scene, target, settings);
-    add_to_mean(commands, kOnePixel, {.weight = 1.0f, .starts = true});
+    is_frame_ = count == 1;
+    if (!is_frame_) add_to_mean(commands, kOnePixel, {.weight = 1.0f, .starts = true});
+    picture_use_ = kComputed;
     encode(commands, {}, kOnePixel);
+}
+
+std::vector<TriangleCulling::Shown> Averager::shown(const Scene& scene,
+                                                    const FrameSettings& settings,
+                                                    VkExtent2D extent, std::uint32_t count) {
+    if (count > TriangleCulling::kViews) return {};
+    std::vector<FrameTarget> targets;
+    for (std::uint32_t i = 0; i < count; ++i) targets.push_back(target(extent, i, count));
+    return renderer_.shown(scene, targets, settings);
 }
 
 void Averager::count_fragments(VkCommandBuffer commands, const Scene& scene,
                                const FrameSettings& settings, VkExtent2D extent) {
     fit(extent);
-    FrameTarget target = this->target();
+    FrameTarget target = this->target(extent, 0, 1);
     target.counts_fragments = true;
     renderer_.record(commands, 0, scene, target, settings);
 }
@@ -195,8 +220,8 @@ VkImage Averager::encode(VkCommandBuffer commands, const PictureBytes& form) {
 }
 
 VkImage Averager::encode(VkCommandBuffer commands, const PictureBytes& form, VkExtent2D extent) {
-    image_barrier(commands, mean_.handle.get(), VK_IMAGE_ASPECT_COLOR_BIT, mean_use_, kComputed);
-    mean_use_ = kComputed;
+    image_barrier(commands, picture(), VK_IMAGE_ASPECT_COLOR_BIT, picture_use_, kComputed);
+    picture_use_ = kComputed;
     image_barrier(commands, bytes_.handle.get(), VK_IMAGE_ASPECT_COLOR_BIT,
                   {VK_IMAGE_LAYOUT_UNDEFINED, kCopied.stages, VK_ACCESS_2_NONE}, kComputed);
     dispatch(commands, encode_.get(), extent,
@@ -208,9 +233,9 @@ VkImage Averager::encode(VkCommandBuffer commands, const PictureBytes& form, VkE
 }
 
 VkImage Averager::mean(VkCommandBuffer commands) {
-    image_barrier(commands, mean_.handle.get(), VK_IMAGE_ASPECT_COLOR_BIT, mean_use_, kCopied);
-    mean_use_ = kCopied;
-    return mean_.handle.get();
+    image_barrier(commands, picture(), VK_IMAGE_ASPECT_COLOR_BIT, picture_use_, kCopied);
+    picture_use_ = kCopied;
+    return picture();
 }
 
 VkDeviceSize Averager::memory_bytes() const {

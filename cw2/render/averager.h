@@ -4,6 +4,7 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <vector>
 
 #include "cw2/render/renderer.h"
 
@@ -35,10 +36,14 @@ class Averager {
              const FrameSettings& settings, VkExtent2D extent, std::uint32_t index,
              std::uint32_t count, bool clamps);
 
-    /// Records what has a device compile what pictures of the scene will need, without reading its
-    /// textures; see FrameTarget::rehearses. What there is of a mean is lost.
+    /// Records what has a device compile what pictures of `count` frames of the scene will need,
+    /// without reading its textures; see FrameTarget::rehearses. What there is of a mean is lost.
     void rehearse(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
-                  const FrameSettings& settings, VkExtent2D extent);
+                  const FrameSettings& settings, VkExtent2D extent, std::uint32_t count);
+
+    /// What the frames of a picture draw, see Renderer::shown(); nothing for more than it keeps.
+    std::vector<TriangleCulling::Shown> shown(const Scene& scene, const FrameSettings& settings,
+                                              VkExtent2D extent, std::uint32_t count);
 
     /// Records a frame at the pixels' centres whose fragments are counted, see
     /// Renderer::fragments(). What there is of a mean stays.
@@ -58,8 +63,12 @@ class Averager {
 
  private:
     void fit(VkExtent2D extent);
-    /// Where a frame is drawn.
-    FrameTarget target() const;
+    /// For pictures of several frames.
+    void make_mean();
+    void write_set(VkDescriptorSet set, VkImageView mean) const;
+    /// Where a frame of several, or the only one, is drawn.
+    FrameTarget target(VkExtent2D extent, std::uint32_t index, std::uint32_t count) const;
+    VkImage picture() const { return is_frame_ ? frame_.handle.get() : mean_.handle.get(); }
     /// Of the pixels of `extent`, and of some beside them.
     void add_to_mean(VkCommandBuffer commands, VkExtent2D extent,
                      const interop::AverageConstants& constants);
@@ -74,12 +83,14 @@ class Averager {
     Pipeline add_;
     Pipeline encode_;
     DescriptorPool pool_;
-    VkDescriptorSet set_;
+    VkDescriptorSet mean_set_;
+    VkDescriptorSet frame_set_;  ///< in which a single frame is the mean
     Image frame_;
-    Image mean_;
+    Image mean_;  ///< empty until there is one of several frames
     Image bytes_;
     VkExtent2D extent_{};
-    ImageUse mean_use_{};  ///< the last one recorded
+    bool is_frame_ = false;   ///< the picture at hand is a single frame
+    ImageUse picture_use_{};  ///< of it or of the mean, the last one recorded
 };
 
 }  // namespace cw2

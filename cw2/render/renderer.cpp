@@ -147,6 +147,16 @@ glm::mat4 clip_from_picture(const VkRect2D& area, VkExtent2D extent) {
     return clip;
 }
 
+std::vector<std::uint32_t> visible_chunks(const Scene& scene, const FrameTarget& target,
+                                          const FrameSettings& settings) {
+    std::vector<std::uint32_t> visible;
+    find_visible(scene.chunks(), scene.draws(),
+                 clip_from_picture(area_of(target), target.extent) *
+                     scene_uniforms(scene, target, settings).projCam,
+                 settings.camera.position, visible);
+    return visible;
+}
+
 /// A white line, a pixel to either side of where the columns of the right side begin.
 void draw_divider(VkCommandBuffer commands, std::uint32_t column, VkExtent2D extent) {
     const std::uint32_t left = column > 0 ? column - 1 : 0;
@@ -170,6 +180,8 @@ Renderer::Renderer(const Device& device, const Layouts& layouts, const ShaderCod
       fragments_(make_fragment_counter(device)) {
     require_samples(device, color_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, samples);
     require_samples(device, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, samples);
+    // Which triangles several samples a pixel show is not known.
+    if (device.is_cpu() && samples == VK_SAMPLE_COUNT_1_BIT) culling_.emplace(device);
     make_slots(slots);
 }
 
@@ -279,7 +291,7 @@ void Renderer::draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, c
         // The layouts have the same push constants: what is pushed through one is there for all.
         vkCmdPushConstants(commands, layouts_.pipeline(Shading::opaque), kConstantsStages,
                            interop::kDisplayOffset, sizeof display, &display);
-        draw_visible(commands, scene_set, scene, side, settings);
+        draw_ranges(commands, scene_set, scene, side, settings);
     };
     draw(settings, 0, end);
     if (!settings.split) return;
@@ -287,15 +299,15 @@ void Renderer::draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, c
     if (!target.rehearses) draw_divider(commands, end, target.extent);
 }
 
-void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
-                            const Side& side, const FrameSettings& settings) {
+void Renderer::draw_ranges(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
+                           const Side& side, const FrameSettings& settings) {
     VkPipeline bound_pipeline = VK_NULL_HANDLE;
     VkPipelineLayout bound_layout = VK_NULL_HANDLE;
     VkDescriptorSet bound_material = VK_NULL_HANDLE;
     const Draw* bound_draw = nullptr;
-    for (const std::uint32_t index : visible_) {
-        const SceneChunk& chunk = scene.chunks()[index];
-        const Draw& draw = scene.draws()[chunk.draw];
+    if (shown_indices_) vkCmdBindIndexBuffer(commands, shown_indices_, 0, VK_INDEX_TYPE_UINT16);
+    for (const DrawRange& range : ranges_) {
+        const Draw& draw = scene.draws()[range.draw];
         if (&draw != bound_draw) {
             const VkPipeline pipeline = pipelines_.get(pipeline_key(draw, side, settings));
             const VkPipelineLayout layout = layouts_.pipeline(draw.shading);
@@ -320,20 +332,48 @@ void Renderer::draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set,
                                                         : VK_CULL_MODE_NONE);
             const VkBuffer vertices = scene.vertices();
             vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &draw.vertex_offset);
-            vkCmdBindIndexBuffer(commands, scene.indices(), draw.index_offset,
-                                 VK_INDEX_TYPE_UINT16);
+            if (!shown_indices_)
+                vkCmdBindIndexBuffer(commands, scene.indices(), draw.index_offset,
+                                     VK_INDEX_TYPE_UINT16);
             bound_draw = &draw;
         }
-        vkCmdDrawIndexed(commands, rehearses_ ? 3 : chunk.index_count, 1, chunk.first_index, 0, 0);
-        counts_.triangles += chunk.index_count / 3;
+        vkCmdDrawIndexed(commands, rehearses_ ? 3 : range.index_count, 1, range.first_index, 0, 0);
+        counts_.triangles += range.index_count / 3;
         ++counts_.draws;
     }
 }
 
-void Renderer::leave_one_chunk_per_material(const Scene& scene) {
+std::vector<TriangleCulling::Shown> Renderer::shown(const Scene& scene,
+                                                    std::span<const FrameTarget> targets,
+                                                    const FrameSettings& settings) {
+    if (!culling_) return {};
+    std::vector<TriangleCulling::Wanted> views;
+    for (const FrameTarget& target : targets) {
+        views.push_back({{scene_uniforms(scene, target, settings).projCam,
+                          near_distance(scene.bounds()), target.extent, area_of(target)},
+                         visible_chunks(scene, target, settings)});
+    }
+    return culling_->find(scene, views);
+}
+
+void Renderer::find_ranges(const Scene& scene, const FrameTarget& target,
+                           const FrameSettings& settings) {
+    ranges_.clear();
+    shown_indices_ = VK_NULL_HANDLE;
+    if (culling_) {
+        const TriangleCulling::Shown shown = this->shown(scene, {&target, 1}, settings).front();
+        shown_indices_ = shown.buffer;
+        ranges_.assign(shown.ranges.begin(), shown.ranges.end());
+    } else {
+        for (const std::uint32_t index : visible_chunks(scene, target, settings)) {
+            const SceneChunk& chunk = scene.chunks()[index];
+            ranges_.push_back({chunk.draw, chunk.first_index, chunk.index_count});
+        }
+    }
+    if (!target.rehearses) return;
     std::set<VkDescriptorSet> materials;
-    std::erase_if(visible_, [&](std::uint32_t index) {
-        return !materials.insert(scene.draws()[scene.chunks()[index].draw].material).second;
+    std::erase_if(ranges_, [&](const DrawRange& range) {
+        return !materials.insert(scene.draws()[range.draw].material).second;
     });
 }
 
@@ -349,11 +389,8 @@ void Renderer::record(VkCommandBuffer commands, std::uint32_t slot, const Scene&
     const std::size_t built_before = pipelines_.built();
     const interop::SceneUniforms uniforms = scene_uniforms(scene, target, settings);
     std::memcpy(slots_[slot].uniforms.mapped.data(), &uniforms, sizeof uniforms);
-    find_visible(scene.chunks(), scene.draws(),
-                 clip_from_picture(area_of(target), target.extent) * uniforms.projCam,
-                 settings.camera.position, visible_);
     rehearses_ = target.rehearses;
-    if (rehearses_) leave_one_chunk_per_material(scene);
+    find_ranges(scene, target, settings);
     if (timestamps_) vkCmdResetQueryPool(commands, timestamps_.get(), 2 * slot, 2);
     write_timestamp(commands, VK_PIPELINE_STAGE_2_TOP_OF_PIPE_BIT, 2 * slot);
     const bool counts_fragments = target.counts_fragments && fragments_;

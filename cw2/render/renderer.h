@@ -5,11 +5,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "cw2/render/frame_settings.h"
 #include "cw2/render/pipelines.h"
 #include "cw2/render/scene.h"
+#include "cw2/render/triangle_culling.h"
 #include "cw2/vulkan/device.h"
 #include "cw2/vulkan/resources.h"
 
@@ -56,6 +58,12 @@ class Renderer {
     void record(VkCommandBuffer commands, std::uint32_t slot, const Scene& scene,
                 const FrameTarget& target, const FrameSettings& settings);
 
+    /// On a CPU, what frames would draw, up to TriangleCulling::kViews of them, see its find();
+    /// on others nothing.
+    std::vector<TriangleCulling::Shown> shown(const Scene& scene,
+                                              std::span<const FrameTarget> targets,
+                                              const FrameSettings& settings);
+
     /// From now on draws with these shaders. No frame may be in flight. Throws VulkanError, and
     /// keeps the old ones.
     void use_shaders(const ShaderCode& code);
@@ -87,9 +95,9 @@ class Renderer {
                            const FrameSettings& settings) const;
     void draw_sides(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
                     const FrameTarget& target, const FrameSettings& settings);
-    void draw_visible(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
-                      const Side& side, const FrameSettings& settings);
-    void leave_one_chunk_per_material(const Scene& scene);
+    void find_ranges(const Scene& scene, const FrameTarget& target, const FrameSettings& settings);
+    void draw_ranges(VkCommandBuffer commands, VkDescriptorSet scene_set, const Scene& scene,
+                     const Side& side, const FrameSettings& settings);
     void write_timestamp(VkCommandBuffer commands, VkPipelineStageFlags2 stage,
                          std::uint32_t query) const;
 
@@ -99,10 +107,12 @@ class Renderer {
     Pipelines pipelines_;
     DescriptorPool descriptor_pool_;
     std::vector<Slot> slots_;
-    QueryPool timestamps_;                ///< two a slot; empty where the device has none
-    QueryPool fragments_;                 ///< one; empty where the device cannot count
-    std::vector<std::uint32_t> visible_;  ///< chunks of the frame at hand
-    bool rehearses_ = false;              ///< the frame at hand, see FrameTarget
+    QueryPool timestamps_;                     ///< two a slot; empty where the device has none
+    QueryPool fragments_;                      ///< one; empty where the device cannot count
+    std::optional<TriangleCulling> culling_;   ///< on CPUs
+    std::vector<DrawRange> ranges_;            ///< that it draws
+    VkBuffer shown_indices_ = VK_NULL_HANDLE;  ///< that hold the ranges; null: the scene's
+    bool rehearses_ = false;                   ///< the frame at hand, see FrameTarget
     FrameCounts counts_;
     VkExtent2D extent_{};
     Image depth_;

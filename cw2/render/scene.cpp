@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
@@ -59,14 +60,18 @@ Buffer upload_buffer(const Device& device, std::optional<Uploader>& uploader,
     return buffer;
 }
 
+std::uint64_t new_id() {
+    static std::atomic<std::uint64_t> last = 0;
+    return ++last;
+}
+
 }  // namespace
 
-Scene::Scene(const Device& device, const Layouts& layouts, SceneFile& file,
-             const TextureSettings& settings, const std::vector<std::uint32_t>& first_levels)
-    : positions_(std::move(file.positions)),
+Scene::Scene(const Device& device, SceneFile& file)
+    : id_(new_id()),
+      positions_(std::move(file.positions)),
       bounds_(file.bounds),
-      start_(file.start),
-      textures_(device, file.document, settings, first_levels) {
+      start_(file.start) {
     const Document& document = file.document;
     std::optional<Uploader> uploader;
     vertices_ =
@@ -80,7 +85,6 @@ Scene::Scene(const Device& device, const Layouts& layouts, SceneFile& file,
     for (const MaterialRecord& material : document.materials) {
         material_names_.emplace_back(document.text(material.name));
     }
-    const std::vector<VkDescriptorSet> sets = make_material_sets(device, layouts, document);
     for (const MeshRecord& mesh : document.meshes) {
         const MaterialRecord& material = document.materials[mesh.material];
         for (const auto& chunk : document.chunks.subspan(mesh.first_chunk, mesh.chunk_count)) {
@@ -96,14 +100,28 @@ Scene::Scene(const Device& device, const Layouts& layouts, SceneFile& file,
                           .forms = mesh.forms,
                           .shading = shading_of(material),
                           .alpha_mask = (material.flags & mesh_format::kAlphaMask) != 0,
-                          .merged_maps = textures_.has_merged_maps(mesh.material),
                           .unlit = (material.flags & mesh_format::kUnlit) != 0,
                           .cull_back = (material.flags & mesh_format::kCullBack) != 0,
-                          .material = sets[mesh.material],
                           .vertex_offset = mesh.vertex_offset,
                           .index_offset = mesh.first_index * sizeof(std::uint16_t),
                           .vertex_count = mesh.vertex_count});
     }
+}
+
+void Scene::make_textures(const Device& device, const Layouts& layouts, const SceneFile& file,
+                          const TextureSettings& settings,
+                          const std::vector<std::uint32_t>& first_levels) {
+    textures_ = SceneTextures(device, file.document, settings, first_levels);
+    const std::vector<VkDescriptorSet> sets = make_material_sets(device, layouts, file.document);
+    for (Draw& draw : draws_) {
+        draw.merged_maps = textures_.has_merged_maps(draw.constants.material);
+        draw.material = sets[draw.constants.material];
+    }
+}
+
+std::span<const std::uint16_t> Scene::host_indices() const {
+    return {reinterpret_cast<const std::uint16_t*>(indices_.mapped.data()),
+            indices_.mapped.size() / sizeof(std::uint16_t)};
 }
 
 std::vector<VkDescriptorSet> Scene::make_material_sets(const Device& device, const Layouts& layouts,
@@ -158,7 +176,8 @@ std::uint64_t Scene::triangle_count() const {
 
 Scene make_scene(const Device& device, const Layouts& layouts, SceneFile file,
                  const TextureSettings& settings) {
-    Scene scene(device, layouts, file, settings);
+    Scene scene(device, file);
+    scene.make_textures(device, layouts, file, settings);
     scene.write_textures(device, file);
     return scene;
 }

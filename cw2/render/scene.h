@@ -4,6 +4,7 @@
 #include <vulkan/vulkan.h>
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,10 +48,14 @@ struct SceneChunk {
 
 class Scene {
  public:
-    /// Uploads the geometry of `file`, whose positions it takes, and makes room for the textures;
-    /// first_levels as of SceneTextures. Throws VulkanError.
-    Scene(const Device& device, const Layouts& layouts, SceneFile& file,
-          const TextureSettings& settings, const std::vector<std::uint32_t>& first_levels = {});
+    /// Uploads the geometry of `file`, whose positions it takes. Throws VulkanError.
+    Scene(const Device& device, SceneFile& file);
+
+    /// Makes room for the textures, without which nothing can be drawn; first_levels as of
+    /// SceneTextures. Throws VulkanError.
+    void make_textures(const Device& device, const Layouts& layouts, const SceneFile& file,
+                       const TextureSettings& settings,
+                       const std::vector<std::uint32_t>& first_levels = {});
 
     /// Uploads the contents of the textures; then the file is not needed any more. Throws
     /// VulkanError.
@@ -64,6 +69,12 @@ class Scene {
     const std::vector<SceneChunk>& chunks() const { return chunks_; }
     VkBuffer vertices() const { return vertices_.handle.get(); }
     VkBuffer indices() const { return indices_.handle.get(); }
+    /// Of all vertices, draw after draw.
+    const std::vector<glm::vec3>& positions() const { return positions_; }
+    /// On CPUs; else none.
+    std::span<const std::uint16_t> host_indices() const;
+    /// No other scene of this run has it.
+    std::uint64_t id() const { return id_; }
     /// Indexed by DrawConstants::material.
     const std::vector<std::string>& material_names() const { return material_names_; }
     /// Where the vertices of a material are.
@@ -76,7 +87,8 @@ class Scene {
     std::vector<VkDescriptorSet> make_material_sets(const Device& device, const Layouts& layouts,
                                                     const mesh_format::Document& document);
 
-    std::vector<glm::vec3> positions_;  ///< of all vertices, draw after draw
+    std::uint64_t id_;
+    std::vector<glm::vec3> positions_;
     Bounds bounds_;
     SceneStart start_;
     Buffer vertices_;

@@ -162,13 +162,16 @@ struct Mesh {
     const glm::vec3* positions;
 };
 
-/// The least step of all that a chunk shows.
-float least_step(const Document& document, const Mesh& mesh, const ChunkRecord& chunk,
+/// Triangles of a mesh.
+struct Triangles {
+    std::size_t mesh;
+    std::span<const std::uint16_t> indices;
+};
+
+/// The least step of all that they show.
+float least_step(const Document& document, const Mesh& mesh, std::span<const std::uint16_t> indices,
                  const Lens& lens) {
-    if (!lens.shows(glm::make_vec3(chunk.center), chunk.radius)) return kNever;
     float least = kNever;
-    const auto indices =
-        document.indices.subspan(mesh.record->first_index + chunk.first_index, chunk.index_count);
     for (std::size_t i = 0; i < indices.size(); i += 3) {
         std::array<glm::vec3, 3> seen;
         std::array<glm::vec2, 3> uvs;
@@ -181,25 +184,48 @@ float least_step(const Document& document, const Mesh& mesh, const ChunkRecord& 
     return least;
 }
 
+std::vector<Triangles> triangles_of(std::span<const TriangleCulling::Shown> shown) {
+    std::vector<Triangles> triangles;
+    for (const TriangleCulling::Shown& frame : shown) {
+        for (const DrawRange& range : frame.ranges)
+            triangles.push_back(
+                {range.draw, frame.indices.subspan(range.first_index, range.index_count)});
+    }
+    return triangles;
+}
+
+std::vector<Triangles> triangles_of(const Document& document, const Lens& lens) {
+    std::vector<Triangles> triangles;
+    for (std::size_t i = 0; i < document.meshes.size(); ++i) {
+        const MeshRecord& mesh = document.meshes[i];
+        for (const ChunkRecord& chunk :
+             document.chunks.subspan(mesh.first_chunk, mesh.chunk_count)) {
+            if (lens.shows(glm::make_vec3(chunk.center), chunk.radius))
+                triangles.push_back(
+                    {i, document.indices.subspan(mesh.first_index + chunk.first_index,
+                                                 chunk.index_count)});
+        }
+    }
+    return triangles;
+}
+
 /// Of every material.
-std::vector<float> least_steps(const SceneFile& file, const Lens& lens) {
-    const Document& document = file.document;
+std::vector<float> least_steps(const Document& document, const Bounds& bounds, const Lens& lens,
+                               const std::vector<Triangles>& triangles) {
     std::vector<Mesh> meshes;
-    const glm::vec3* positions = file.positions.data();
+    const glm::vec3* positions = bounds.vertices.data();
     for (const MeshRecord& mesh : document.meshes) {
         meshes.push_back({&mesh, positions});
         positions += mesh.vertex_count;
     }
-    std::vector<float> of_mesh(meshes.size(), kNever);
-    tbb::parallel_for(std::size_t{0}, meshes.size(), [&](std::size_t i) {
-        const MeshRecord& mesh = *meshes[i].record;
-        for (const ChunkRecord& chunk : document.chunks.subspan(mesh.first_chunk, mesh.chunk_count))
-            of_mesh[i] = std::min(of_mesh[i], least_step(document, meshes[i], chunk, lens));
+    std::vector<float> steps(triangles.size());
+    tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t i) {
+        steps[i] = least_step(document, meshes[triangles[i].mesh], triangles[i].indices, lens);
     });
     std::vector<float> of_material(document.materials.size(), kNever);
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        float& least = of_material[meshes[i].record->material];
-        least = std::min(least, of_mesh[i]);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        float& least = of_material[document.meshes[triangles[i].mesh].material];
+        least = std::min(least, steps[i]);
     }
     return of_material;
 }
@@ -211,10 +237,13 @@ std::uint32_t halvings(std::uint32_t size) {
 
 }  // namespace
 
-std::vector<std::uint32_t> first_touched_levels(const SceneFile& file, const Camera& camera,
-                                                const PictureSampling& sampling) {
-    const Document& document = file.document;
-    const std::vector<float> steps = least_steps(file, Lens(camera, file.bounds, sampling.extent));
+std::vector<std::uint32_t> first_touched_levels(const Document& document, const Bounds& bounds,
+                                                const Camera& camera,
+                                                const PictureSampling& sampling,
+                                                std::span<const TriangleCulling::Shown> shown) {
+    const Lens lens(camera, bounds, sampling.extent);
+    const std::vector<float> steps = least_steps(
+        document, bounds, lens, shown.empty() ? triangles_of(document, lens) : triangles_of(shown));
     // Of each texture, in parts of it.
     std::vector<float> least(document.textures.size(), kNever);
     for (std::size_t i = 0; i < steps.size(); ++i) {

@@ -27,8 +27,9 @@ class LoadedScene {
         const auto options =
             cw2::parse_options(static_cast<int>(arguments.size()), arguments.data());
         cw2::SceneFile file = cw2::load_scene_file(path);
-        scene_ = std::make_unique<cw2::Scene>(
-            device_, layouts_, file, cw2::texture_settings(*options, device_), first_levels);
+        scene_ = std::make_unique<cw2::Scene>(device_, file);
+        scene_->make_textures(device_, layouts_, file, cw2::texture_settings(*options, device_),
+                              first_levels);
         scene_->write_textures(device_, file);
         settings_ = cw2::frame_settings(
             *options, scene_->bounds(),

@@ -319,7 +319,7 @@ TEST(TouchedLevels, GiveTheSamePictureAsAll) {
             Frames all(scene, words);
             const std::vector<float> truth = all.mean(count, false);
             std::vector<std::uint32_t> first = cw2::first_touched_levels(
-                file, all.settings().camera,
+                file.document, file.bounds, all.settings().camera,
                 {{kWidth, kHeight}, cw2::pixel_sample(0, count).lod_bias, 1.0f});
             // The level between two levels is rounded when it is computed.
             EXPECT_LE(farthest(Frames(scene, words, first).mean(count, false), truth), 1e-6f)
@@ -370,7 +370,9 @@ TEST(Bench, SaysWhatAPictureTakes) {
         EXPECT_GT(number("load_ms"), 0.0);
         // Of an --output, which there is none of.
         EXPECT_FALSE(stats.contains("first_frame_ms") || stats.contains("save_ms"));
-        EXPECT_EQ(number("frame_triangles"), 4.0);
+        // On lavapipe what the near wall hides is not drawn; at the last picture of a turn both
+        // walls are seen, from aside.
+        EXPECT_EQ(number("frame_triangles"), orbit.empty() ? 2.0 : 4.0);
         EXPECT_EQ(number("pipelines"), 1.0);
         for (const char* what : {"wall", "cpu"}) {
             const double median = number(what + std::string("_median_ms"));
@@ -378,10 +380,9 @@ TEST(Bench, SaysWhatAPictureTakes) {
             EXPECT_GE(number(what + std::string("_95_ms")), median);
         }
         EXPECT_GT(number("peak_memory_mib"), 1.0);
-        // Both walls are drawn all over the picture, and quads at their diagonals twice; at the
-        // last picture of a turn they are seen from aside. Lavapipe counts what is hidden, too.
+        // A wall is drawn all over the picture, and quads at its diagonal twice.
         EXPECT_GE(number("fragments_per_pixel"), orbit.empty() ? 1.0 : 0.1);
-        EXPECT_LE(number("fragments_per_pixel"), orbit.empty() ? 3.0 : 1.9);
+        EXPECT_LE(number("fragments_per_pixel"), orbit.empty() ? 1.5 : 1.9);
     }
 }
 

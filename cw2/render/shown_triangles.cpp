@@ -1,0 +1,252 @@
+#include "cw2/render/shown_triangles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <optional>
+
+namespace cw2 {
+
+namespace {
+
+/// Pixels; devices' floats and their rounding to 1/256 pixel move corners by less.
+constexpr float kRounding = 1.0f / 64.0f;
+/// Of a depth; devices' floats err by less.
+constexpr float kDepthErrors = 3e-4f;
+constexpr float kAlwaysSeen = std::numeric_limits<float>::infinity();
+
+/// A vertex, seen from the camera.
+struct SeenCorner {
+    glm::vec3 clip;  ///< x, y and w in clip space, where z is always the near plane's distance
+    PictureCorner corner;  ///< if w is positive
+};
+
+using Triangle = std::array<PictureCorner, 3>;
+
+/// What may be seen of the triangles, until all that hides is drawn.
+struct Candidate {
+    PixelRect around;               ///< its pixels and one more to each side
+    float nearest;                  ///< depth
+    std::uint32_t first_index = 0;  ///< in its chunk
+    std::uint32_t chunk = 0;
+};
+
+float least(float a, float b, float c) {
+    return std::min(std::min(a, b), c);
+}
+float most(float a, float b, float c) {
+    return std::max(std::max(a, b), c);
+}
+
+/// The first and the last pixel whose centre may lie to one side of `edge`, pixels, which is
+/// within a depth buffer's reach.
+int first_center(float edge) {
+    constexpr float kAbove = 2.0f * DepthBuffer::kReach;
+    return static_cast<int>(kAbove) - static_cast<int>(kAbove - (edge - 0.5f - kRounding));
+}
+int last_center(float edge) {
+    constexpr float kAbove = 2.0f * DepthBuffer::kReach;
+    return static_cast<int>(kAbove + (edge - 0.5f + kRounding)) - static_cast<int>(kAbove);
+}
+
+class Finder {
+ public:
+    Finder(const SceneTriangles& scene, const PictureView& view, DepthBuffer& depth)
+        : scene_(scene),
+          near_(view.near),
+          clip_(view.clip_from_world),
+          depth_(depth),
+          width_(static_cast<int>(view.area.extent.width)),
+          height_(static_cast<int>(view.area.extent.height)),
+          half_(0.5f * glm::vec2(view.extent.width, view.extent.height)),
+          center_(half_ - glm::vec2(view.area.offset.x, view.area.offset.y)) {
+        for (const Draw& draw : scene.draws) {
+            first_vertex_.push_back(vertices_);
+            vertices_ += draw.vertex_count;
+        }
+        depth_.clear(width_, height_);
+    }
+
+    void add(std::uint32_t index) {
+        const SceneChunk& chunk = scene_.chunks[index];
+        const Draw& draw = scene_.draws[chunk.draw];
+        const std::span<const std::uint16_t> corners = scene_.indices.subspan(
+            draw.index_offset / sizeof(std::uint16_t) + chunk.first_index, chunk.index_count);
+        std::uint16_t first = corners[0], last = corners[0];
+        for (const std::uint16_t corner : corners) {
+            first = std::min(first, corner);
+            last = std::max(last, corner);
+        }
+        const glm::vec3* const positions =
+            scene_.positions.data() + first_vertex_[chunk.draw] + first;
+        // The vertices of a chunk lie together as a rule; then each is transformed once.
+        const std::size_t range = std::size_t{last} - first + 1u;
+        const bool lie_together = range <= corners.size();
+        seen_.resize(lie_together ? range : corners.size());
+        for (std::size_t i = 0; i < seen_.size(); ++i)
+            see(positions[lie_together ? i : corners[i] - first], seen_[i]);
+        for (std::uint32_t i = 0; i < corners.size(); i += 3) {
+            const auto at = [&](std::uint32_t k) -> const SeenCorner& {
+                return seen_[lie_together ? corners[k] - first : k];
+            };
+            std::optional<Candidate> candidate =
+                draw_triangle({&at(i), &at(i + 1), &at(i + 2)}, draw);
+            if (!candidate) continue;
+            candidate->first_index = i;
+            candidate->chunk = index;
+            candidates_.push_back(*candidate);
+        }
+    }
+
+    ShownTriangles shown() {
+        ShownTriangles shown;
+        for (const Candidate& candidate : candidates_) {
+            if (is_hidden(candidate)) continue;
+            const SceneChunk& chunk = scene_.chunks[candidate.chunk];
+            const auto first = static_cast<std::uint32_t>(shown.indices.size());
+            if (shown.ranges.empty() || shown.ranges.back().draw != chunk.draw)
+                shown.ranges.push_back({chunk.draw, first, 0});
+            const std::uint16_t* const corners =
+                scene_.indices.data() +
+                scene_.draws[chunk.draw].index_offset / sizeof(std::uint16_t) + chunk.first_index +
+                candidate.first_index;
+            shown.indices.insert(shown.indices.end(), corners, corners + 3);
+            shown.ranges.back().index_count += 3;
+        }
+        return shown;
+    }
+
+ private:
+    void see(const glm::vec3& p, SeenCorner& out) const {
+        const float x = clip_[0].x * p.x + clip_[1].x * p.y + clip_[2].x * p.z + clip_[3].x;
+        const float y = clip_[0].y * p.x + clip_[1].y * p.y + clip_[2].y * p.z + clip_[3].y;
+        const float w = clip_[0].w * p.x + clip_[1].w * p.y + clip_[2].w * p.z + clip_[3].w;
+        out = {{x, y, w}, in_picture({x, y, w})};
+    }
+
+    PictureCorner in_picture(const glm::vec3& clip) const {
+        const float scale = 1.0f / clip.z;
+        return {clip.x * scale * half_.x + center_.x, clip.y * scale * half_.y + center_.y,
+                near_ * scale};
+    }
+
+    /// Draws it if it hides what is behind it. Nothing where it is not seen.
+    std::optional<Candidate> draw_triangle(const std::array<const SeenCorner*, 3>& corners,
+                                           const Draw& draw) {
+        const float nearest_w = least(corners[0]->clip.z, corners[1]->clip.z, corners[2]->clip.z);
+        if (nearest_w < near_ * (1.0f + kDepthErrors)) return draw_cut(corners, draw);
+        const Triangle triangle{corners[0]->corner, corners[1]->corner, corners[2]->corner};
+        const float left = least(triangle[0].x, triangle[1].x, triangle[2].x);
+        const float right = most(triangle[0].x, triangle[1].x, triangle[2].x);
+        const float top = least(triangle[0].y, triangle[1].y, triangle[2].y);
+        const float bottom = most(triangle[0].y, triangle[1].y, triangle[2].y);
+        // NaNs fail all comparisons.
+        if (!(left > -DepthBuffer::kReach && top > -DepthBuffer::kReach &&
+              right < DepthBuffer::kReach && bottom < DepthBuffer::kReach))
+            return draw_cut(corners, draw);
+        const PixelRect centers{first_center(left), first_center(top), last_center(right),
+                                last_center(bottom)};
+        if (centers.left > centers.right || centers.top > centers.bottom) return std::nullopt;
+        if (centers.right < 0 || centers.bottom < 0 || centers.left >= width_ ||
+            centers.top >= height_)
+            return std::nullopt;
+
+        const float area = signed_area(triangle);
+        const float length = (right - left) + (bottom - top);
+        const bool looks_away = draw.cull_back && area > 0.0f;
+        if (looks_away && area > kRounding * length) return std::nullopt;
+        const Candidate candidate{
+            {centers.left - 1, centers.top - 1, centers.right + 1, centers.bottom + 1},
+            (1.0f + kDepthErrors) * near_ / nearest_w};
+        // What is hidden now stays so.
+        if (depth_.hides(candidate.around, candidate.nearest)) return std::nullopt;
+        if (!looks_away && occludes(draw)) depth_.draw(triangle);
+        return candidate;
+    }
+
+    static bool occludes(const Draw& draw) { return !draw.alpha_mask; }
+
+    /// The same of one that reaches behind the near plane, or far beside the picture: it is cut
+    /// (Sutherland and Hodgman 1974), and taken to be seen.
+    std::optional<Candidate> draw_cut(const std::array<const SeenCorner*, 3>& corners,
+                                      const Draw& draw) {
+        if (most(corners[0]->clip.z, corners[1]->clip.z, corners[2]->clip.z) <
+            near_ * (1.0f - kDepthErrors))
+            return std::nullopt;
+        const Candidate candidate{{0, 0, width_, height_}, kAlwaysSeen};
+        if (!occludes(draw)) return candidate;
+        // Half of what a depth buffer takes.
+        const float reach_x = 0.5f * DepthBuffer::kReach / half_.x;
+        const float reach_y = 0.5f * DepthBuffer::kReach / half_.y;
+        const std::array<glm::vec4, 5> planes{
+            // Of x, y, w, 1.
+            glm::vec4{0.0f, 0.0f, 1.0f, -near_ * (1.0f + kDepthErrors)},
+            glm::vec4{1.0f, 0.0f, reach_x, 0.0f}, glm::vec4{-1.0f, 0.0f, reach_x, 0.0f},
+            glm::vec4{0.0f, 1.0f, reach_y, 0.0f}, glm::vec4{0.0f, -1.0f, reach_y, 0.0f}};
+        std::array<glm::vec3, 8> polygon{corners[0]->clip, corners[1]->clip, corners[2]->clip};
+        std::size_t count = 3;
+        for (const glm::vec4& plane : planes) {
+            const std::array<glm::vec3, 8> whole = polygon;
+            const std::size_t whole_count = count;
+            const auto inside = [&](const glm::vec3& p) {
+                return glm::dot(plane, glm::vec4(p, 1.0f));
+            };
+            count = 0;
+            for (std::size_t i = 0; i < whole_count; ++i) {
+                const glm::vec3 &p = whole[i], &q = whole[(i + 1) % whole_count];
+                const float at_p = inside(p), at_q = inside(q);
+                if (at_p >= 0.0f) polygon[count++] = p;
+                if ((at_p >= 0.0f) == (at_q >= 0.0f)) continue;
+                polygon[count++] = p + at_p / (at_p - at_q) * (q - p);
+            }
+        }
+        for (std::size_t i = 2; i < count; ++i) {
+            const Triangle triangle{in_picture(polygon[0]), in_picture(polygon[i - 1]),
+                                    in_picture(polygon[i])};
+            const bool is_finite = std::ranges::all_of(triangle, [](const PictureCorner& corner) {
+                return std::abs(corner.x) < DepthBuffer::kReach &&
+                       std::abs(corner.y) < DepthBuffer::kReach;
+            });
+            const bool looks_away = draw.cull_back && signed_area(triangle) > 0.0f;
+            if (is_finite && !looks_away) depth_.draw(triangle);
+        }
+        return candidate;
+    }
+
+    bool is_hidden(const Candidate& candidate) {
+        constexpr int kFewPixels = 64;
+        const PixelRect& r = candidate.around;
+        if (depth_.hides(r, candidate.nearest)) return true;
+        return (r.right - r.left + 1) * (r.bottom - r.top + 1) <= kFewPixels &&
+               depth_.hides_exactly(r, candidate.nearest);
+    }
+
+    const SceneTriangles& scene_;
+    float near_;
+    glm::mat4 clip_;
+    DepthBuffer& depth_;
+    int width_;  ///< of what is drawn, pixels
+    int height_;
+    glm::vec2 half_;    ///< of the picture, pixels
+    glm::vec2 center_;  ///< of the picture, pixels from what is drawn
+    std::vector<std::size_t> first_vertex_;
+    std::size_t vertices_ = 0;
+    std::vector<SeenCorner> seen_;  ///< of the chunk at hand
+    std::vector<Candidate> candidates_;
+};
+
+}  // namespace
+
+ShownTriangles shown_triangles(const SceneTriangles& scene, std::span<const std::uint32_t> chunks,
+                               const PictureView& view, DepthBuffer& depth) {
+    Finder finder(scene, view, depth);
+    for (const std::uint32_t chunk : chunks) finder.add(chunk);
+    return finder.shown();
+}
+
+}  // namespace cw2
