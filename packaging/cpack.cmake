@@ -2,7 +2,10 @@
 # libraries that they need.
 set(CPACK_PACKAGE_NAME cw2)
 set(CPACK_PACKAGE_VENDOR "cw2")
-set(CPACK_PACKAGE_CONTACT "cw2 maintainers <maintainers@cw2.invalid>")
+# Whoever hands packages on answers for them. RFC 2606 keeps .invalid free of addresses.
+set(CW2_MAINTAINER "cw2 maintainers <maintainers@cw2.invalid>" CACHE STRING
+    "maintainer that Debian packages name: NAME <ADDRESS>")
+set(CPACK_PACKAGE_CONTACT ${CW2_MAINTAINER})
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "baker and Vulkan renderer of triangle meshes")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)

@@ -32,6 +32,12 @@ done
 
 # shellcheck disable=SC2144 # one of each
 [[ -e $(echo "$work"/cw2_*.deb) ]] || { echo "skipped: Debian packages take dpkg-dev and file" && exit 77; }
+maintainer=$(sed -n 's/^CW2_MAINTAINER:STRING=//p' "$build/CMakeCache.txt")
+for package in "$work"/*.deb; do
+    [[ $(dpkg-deb -f "$package" Maintainer) == "$maintainer" ]] || fail "$package does not name '$maintainer'"
+    [[ $(dpkg-deb --fsys-tarfile "$package" | tar -xO --wildcards '*/changelog.gz' | zcat) == *" -- $maintainer  "* ]] ||
+        fail "the changelog of $package does not name '$maintainer'"
+done
 depends=$(dpkg-deb -f "$work"/cw2_*.deb Depends)
 for library in libc6 libfmt libglfw3 libvulkan1; do
     [[ $depends == *$library* ]] || fail "cw2 does not depend on $library: $depends"
