@@ -51,12 +51,7 @@ SourceScene read_scene(const Settings& settings, const Warn& warn) {
     // Empty: files may be anywhere.
     std::filesystem::path root;
     if (settings.restricted) root = path.has_parent_path() ? path.parent_path() : ".";
-    try {
-        return is_gltf(path) ? read_gltf(path, warn, root)
-                             : read_obj(path, warn, kObjChunkBytes, root);
-    } catch (const std::bad_alloc&) {
-        throw BakeError(path.string() + ": there is not enough memory to read it");
-    }
+    return is_gltf(path) ? read_gltf(path, warn, root) : read_obj(path, warn, kObjChunkBytes, root);
 }
 
 /// Throws BakeError if the box of the packed scene is beyond what floats hold, or its radius so

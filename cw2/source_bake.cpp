@@ -18,10 +18,12 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <system_error>
 #include <utility>
 
+#include "common/file_stamp.h"
 #include "common/io.h"
 #include "common/program.h"
 #include "common/signals.h"
@@ -57,18 +59,10 @@ fs::path cache_folder() {
 
 /// What changes with a file's contents, as text.
 std::string stamp_of(const fs::path& path) {
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) return "missing";
-    return fmt::format("{}.{:09} {} {}", status.st_mtim.tv_sec, status.st_mtim.tv_nsec,
-                       status.st_size, status.st_ino);
-}
-
-/// At the start of time where there is no such file.
-std::chrono::system_clock::time_point written_at(const fs::path& path) {
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) return {};
-    return std::chrono::system_clock::time_point(std::chrono::seconds(status.st_mtim.tv_sec) +
-                                                 std::chrono::nanoseconds(status.st_mtim.tv_nsec));
+    const std::optional<common::FileStamp> stamp = common::stamp_of(path);
+    if (!stamp) return "missing";
+    return fmt::format("{}.{:09} {} {}", stamp->seconds, stamp->nanoseconds, stamp->size,
+                       stamp->inode);
 }
 
 /// Files are given the time of the last tick, of which there are 100 a second at least.
@@ -342,7 +336,10 @@ bool SourceBake::finish() {
 void SourceBake::note_sources() {
     std::string notes = key_;
     for (const fs::path& path : sources_) {
-        if (path.string().find('\n') != std::string::npos || written_at(path) >= read_at_) return;
+        const std::optional<common::FileStamp> stamp = common::stamp_of(path);
+        if (path.string().find('\n') != std::string::npos ||
+            (stamp && stamp->written_at() >= read_at_))
+            return;
         notes += stamp_of(path) + '\t' + path.string() + '\n';
     }
     notes += '\n';

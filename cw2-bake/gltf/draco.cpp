@@ -1,6 +1,5 @@
 #include "cw2-bake/gltf/draco.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <map>
@@ -13,16 +12,6 @@
 
 namespace bake {
 namespace {
-
-/// The module stays loaded. Null, and why in `error`, where it
-/// cannot be.
-DracoReader* load_draco_reader(std::string& error) {
-    const auto module = common::beside_program(kDracoReaderModule);
-    void* handle = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    void* symbol = handle ? dlsym(handle, kDracoReaderSymbol) : nullptr;
-    if (!symbol) error = dlerror();
-    return reinterpret_cast<DracoReader*>(symbol);
-}
 
 /// Bytes that hold a mesh, of one or more primitives: decoded once, with all that these ask for.
 struct Part {
@@ -114,7 +103,8 @@ class Decoder {
 
     void read(std::span<const std::byte> data, DracoMesh& mesh, const std::string& place) const {
         std::string error;
-        static DracoReader* const reader = load_draco_reader(error);
+        static auto* const reader = reinterpret_cast<DracoReader*>(
+            common::load_symbol(kDracoReaderModule, kDracoReaderSymbol, error));
         if (!reader)
             fail_at(file_.path, place, "cannot be read without the library of Draco: " + error);
         if (!reader(data, mesh, error))

@@ -1,6 +1,5 @@
 #include "cw2-bake/textures/read_image.h"
 
-#include <dlfcn.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -20,18 +19,14 @@
 namespace bake {
 namespace {
 
-/// The module stays loaded.
 ImageReader* load_image_reader() {
     const auto module = common::beside_program(kImageReaderModule);
     if (!std::filesystem::exists(module))
         throw ImageError("other formats than PNG and JPEG take OpenImageIO, and " +
                          module.string() + " is not there");
-    // Lazy: binding every function of 250 libraries takes longer than decoding an image.
-    void* handle = dlopen(module.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    void* symbol = handle ? dlsym(handle, kImageReaderSymbol) : nullptr;
-    if (!symbol) {
-        throw ImageError(std::string("no image can be read: ") + dlerror());
-    }
+    std::string error;
+    void* const symbol = common::load_symbol(kImageReaderModule, kImageReaderSymbol, error);
+    if (!symbol) throw ImageError("no image can be read: " + error);
     return reinterpret_cast<ImageReader*>(symbol);
 }
 

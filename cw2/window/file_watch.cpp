@@ -1,7 +1,5 @@
 #include "cw2/window/file_watch.h"
 
-#include <sys/stat.h>
-
 #include <utility>
 
 namespace cw2 {
@@ -9,23 +7,16 @@ namespace cw2 {
 FileWatch::FileWatch(std::vector<std::filesystem::path> paths, const std::optional<Time>& since)
     : paths_(std::move(paths)), known_(look()), latest_(known_) {
     if (!since) return;
-    for (std::optional<Stamp>& stamp : known_) {
+    for (std::optional<common::FileStamp>& stamp : known_) {
         if (!stamp) continue;
-        const Time written(std::chrono::seconds(stamp->seconds) +
-                           std::chrono::nanoseconds(stamp->nanoseconds));
+        const Time written = stamp->written_at();
         if (written >= *since && written <= std::chrono::system_clock::now()) stamp.reset();
     }
 }
 
 FileWatch::Stamps FileWatch::look() const {
     Stamps stamps;
-    for (const std::filesystem::path& path : paths_) {
-        struct stat status {};
-        auto& stamp = stamps.emplace_back();
-        if (stat(path.c_str(), &status) == 0)
-            stamp = Stamp{status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
-                          status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
-    }
+    for (const std::filesystem::path& path : paths_) stamps.push_back(common::stamp_of(path));
     return stamps;
 }
 

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <chrono>
-#include <compare>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <vector>
+
+#include "common/file_stamp.h"
 
 namespace cw2 {
 
@@ -24,16 +24,7 @@ class FileWatch {
     bool changed();
 
  private:
-    /// What differs between a file and the one that took its place, or its rewritten contents.
-    struct Stamp {
-        std::uint64_t device;
-        std::uint64_t inode;
-        std::uint64_t size;
-        std::int64_t seconds;
-        std::int64_t nanoseconds;
-        auto operator<=>(const Stamp&) const = default;
-    };
-    using Stamps = std::vector<std::optional<Stamp>>;
+    using Stamps = std::vector<std::optional<common::FileStamp>>;
     Stamps look() const;
 
     std::vector<std::filesystem::path> paths_;

@@ -49,7 +49,7 @@ class SceneFolder : public testing::Test {
         ASSERT_EQ(outcome.err, "");
     }
     void write(const std::string& name, const std::string& text) const {
-        std::ofstream(folder_ / name, std::ios::binary) << text;
+        folder_.write(name, text);
     }
     std::string read(const std::string& name) const {
         std::ifstream file(folder_ / name, std::ios::binary);

@@ -65,7 +65,7 @@ TEST_F(Limits, ALackOfMemorySaysWhatWasRead) {
                                  BAKE_PROGRAM, "many.obj", "--quiet", "--threads", "1"},
                                 {{}, folder_.path()});
     EXPECT_EQ(outcome.status, 1);
-    EXPECT_EQ(outcome.err, "cw2-bake: many.obj: there is not enough memory to read it\n");
+    EXPECT_EQ(outcome.err, "cw2-bake: many.obj: there is not enough memory for the stage 'read'\n");
 }
 
 TEST_F(Limits, HoweverLittleMemoryThereIsTheMessageSaysSo) {

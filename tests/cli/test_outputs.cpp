@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "tests/cli/scene_folder.h"
+#include "tests/support/wait_until.h"
 
 namespace {
 
@@ -207,9 +208,8 @@ TEST_F(Outputs, SignalsLeaveNoTemporaryFiles) {
         Running turn({CW2_PROGRAM, "scene.cw2mesh", "--size", "320x240", "--frames", "10000",
                       "--output", "turn/%05d.png", "--stats", "stats.json"},
                      {{}, folder_.path()});
-        while (!is_at_work()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        while (!fs::exists(here("turn/00001.png")))
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        ASSERT_TRUE(wait_until(is_at_work));
+        ASSERT_TRUE(wait_until([&] { return fs::exists(here("turn/00001.png")); }));
         ASSERT_EQ(::kill(turn.process(), signal), 0);
         EXPECT_EQ(turn.wait().status, 128 + signal);
         EXPECT_EQ(is_at_work(), signal == SIGKILL);

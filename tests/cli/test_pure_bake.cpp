@@ -41,6 +41,13 @@ TEST_F(PureBake, FromAnotherRootAsAnotherUserAtAnotherTimeInAnotherLanguage) {
     for (const auto& entry : fs::directory_iterator(elsewhere))
         fs::last_write_time(entry, fs::file_time_type::clock::now() - std::chrono::hours(9000));
 
+    // Where a decimal point is a comma.
+    const fs::path languages = other.path() / "languages";
+    fs::create_directory(languages);
+    const std::string language = "LC_ALL=de_DE.UTF-8", where = "LOCPATH=" + languages.string();
+    run({"/usr/bin/localedef", "-i", "de_DE", "-f", "UTF-8", languages / "de_DE.UTF-8"});
+    ASSERT_EQ(run({"/usr/bin/printf", "%.1f", "1,5"}, {{language, where}, {}}).out, "1,5");
+
     // Root can be somebody else, who may not see where the program was built.
     fs::copy_file(BAKE_PROGRAM, elsewhere / "bake");
     std::vector<std::string> as_another{elsewhere / "bake"};
@@ -57,10 +64,9 @@ TEST_F(PureBake, FromAnotherRootAsAnotherUserAtAnotherTimeInAnotherLanguage) {
                                        {"LC_ALL=C", "TZ=UTC", "USER=alice", "HOME=/home/alice"},
                                        here("scene.obj"), here(out));
         std::this_thread::sleep_for(std::chrono::milliseconds(1100));
-        const std::string again =
-            baked(elsewhere, as_another,
-                  {"LC_ALL=de_DE.UTF-8", "TZ=Asia/Tokyo", "USER=bob", "HOME=/home/bob"},
-                  "scene.obj", out);
+        const std::string again = baked(
+            elsewhere, as_another, {language, where, "TZ=Asia/Tokyo", "USER=bob", "HOME=/home/bob"},
+            "scene.obj", out);
         ASSERT_FALSE(file.empty());
         EXPECT_TRUE(file == again) << out;
         for (const std::string& trace : traces)

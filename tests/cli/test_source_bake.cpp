@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/cli/scene_folder.h"
+#include "tests/support/wait_until.h"
 
 namespace {
 
@@ -202,8 +203,7 @@ TEST_F(SourceBake, SignalsLeaveNoTemporaryBake) {
                         {{"XDG_CACHE_HOME=/proc/none", "MESA_SHADER_CACHE_DISABLE=true",
                           "TMPDIR=" + here("temporary").string()},
                          folder_.path()});
-        while (fs::is_empty(here("temporary")))
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        ASSERT_TRUE(wait_until([&] { return !fs::is_empty(here("temporary")); }));
         std::this_thread::sleep_for(std::chrono::milliseconds(30));
         ASSERT_EQ(::kill(running.process(), signal), 0);
         EXPECT_EQ(running.wait().status, 128 + signal);

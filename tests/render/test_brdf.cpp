@@ -16,7 +16,7 @@
 #include "tests/render/brdf_truth.h"
 #include "tests/render/drawing.h"
 #include "tests/render/ray_cast.h"
-#include "tests/render/srgb_truth.h"
+#include "tests/support/srgb_truth.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "tests/render/drawing.h"
-#include "tests/render/srgb_truth.h"
+#include "tests/support/srgb_truth.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {

@@ -9,9 +9,9 @@
 
 #include "tests/render/drawing.h"
 #include "tests/render/known_textures.h"
-#include "tests/render/srgb_truth.h"
 #include "tests/support/gltf_writer.h"
 #include "tests/support/process.h"
+#include "tests/support/srgb_truth.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {

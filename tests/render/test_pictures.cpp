@@ -16,7 +16,7 @@
 
 #include "tests/render/drawing.h"
 #include "tests/render/known_textures.h"
-#include "tests/render/srgb_truth.h"
+#include "tests/support/srgb_truth.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {

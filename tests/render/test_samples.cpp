@@ -21,8 +21,8 @@
 #include "cw2/render/touched_levels.h"
 #include "tests/render/drawing.h"
 #include "tests/render/loaded_scene.h"
-#include "tests/render/srgb_truth.h"
 #include "tests/support/process.h"
+#include "tests/support/srgb_truth.h"
 #include "tests/support/temporary_folder.h"
 
 namespace {

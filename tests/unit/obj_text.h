@@ -1,50 +1,22 @@
 // OBJ and MTL texts for tests: written to a folder of their own, read, and made comparable.
 #pragma once
 
-#include <unistd.h>
-
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <random>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <tuple>
 #include <vector>
 
 #include "cw2-bake/obj/read_obj.h"
-
-/// A folder that vanishes with what is in it.
-class TempFolder {
- public:
-    TempFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "cw2-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-        path_ = name;
-    }
-    ~TempFolder() { std::filesystem::remove_all(path_); }
-    TempFolder(const TempFolder&) = delete;
-    TempFolder& operator=(const TempFolder&) = delete;
-
-    std::filesystem::path write(const std::string& name, std::string_view text) const {
-        std::filesystem::create_directories((path_ / name).parent_path());
-        std::ofstream(path_ / name, std::ios::binary) << text;
-        return path_ / name;
-    }
-    const std::filesystem::path& path() const { return path_; }
-
- private:
-    std::filesystem::path path_;
-};
+#include "tests/support/temporary_folder.h"
 
 struct Reading {
     bake::SourceScene scene;
     std::vector<std::string> warnings;  ///< without the folder
 };
 
-inline Reading read(const TempFolder& folder, std::string_view obj,
+inline Reading read(const TemporaryFolder& folder, std::string_view obj,
                     std::size_t chunk_bytes = 256 * 1024) {
     Reading reading;
     const std::string prefix = folder.path().string() + "/";
@@ -57,12 +29,12 @@ inline Reading read(const TempFolder& folder, std::string_view obj,
 }
 
 inline Reading read(std::string_view obj) {
-    return read(TempFolder{}, obj);
+    return read(TemporaryFolder{}, obj);
 }
 
 /// The message of the BakeError that reading ends in, without the folder; empty if in none.
 inline std::string error_of(std::string_view obj, std::size_t chunk_bytes = 256 * 1024) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     try {
         read(folder, obj, chunk_bytes);
     } catch (const bake::BakeError& error) {

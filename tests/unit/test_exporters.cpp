@@ -71,7 +71,7 @@ class Exporter : public testing::TestWithParam<Sample> {};
 
 TEST_P(Exporter, IsReadAsItIsMeant) {
     const Sample& sample = GetParam();
-    const TempFolder folder;
+    const TemporaryFolder folder;
     for (const auto& [name, text] : sample.files)
         folder.write(name, with_line_ends(text, sample.crlf));
     const Reading reading = read(folder, with_line_ends(sample.obj, sample.crlf));

@@ -26,7 +26,7 @@ class Finder : public testing::Test {
         folder_.write(name, "");
     }
 
-    TempFolder folder_;
+    TemporaryFolder folder_;
 };
 
 TEST_F(Finder, TakesWhatIsNamed) {
@@ -77,7 +77,7 @@ TEST_F(Finder, NamesNearMisses) {
 /// What reading an OBJ with this mtllib line warns of, where x.mtl and "a b.mtl" define the
 /// material.
 std::vector<std::string> warnings_of(const std::string& line, const std::string& own = "") {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     for (const char* name : {"x.mtl", "a b.mtl"}) folder.write(name, "newmtl m\nKd 1 0 0\n");
     if (!own.empty()) folder.write(own, "newmtl m\nKd 1 0 0\n");
     const Reading reading = read(folder, line + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
@@ -125,7 +125,7 @@ class RestrictedFinder : public testing::Test {
         return finder.find(root_ / "tex", bake::readings_of(name));
     }
 
-    TempFolder folder_;
+    TemporaryFolder folder_;
     fs::path root_ = folder_.path() / "scene";
 };
 

@@ -8,6 +8,7 @@
 #include "cw2-bake/textures/mip_chain.h"
 #include "cw2-bake/textures/srgb.h"
 #include "cw2-bake/textures/texels.h"
+#include "tests/support/srgb_truth.h"
 
 namespace {
 
@@ -92,29 +93,22 @@ struct Reference {
     }
 };
 
-double srgb_decode(double value) {
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
-double srgb_encode(double value) {
-    return value <= 0.0031308 ? value * 12.92 : 1.055 * std::pow(value, 1.0 / 2.4) - 0.055;
-}
-
 TEST(Srgb, ReturnsEveryByteAndRoundsToTheNearest) {
     for (int i = 0; i < 256; ++i) {
         const float linear = bake::srgb().to_linear(static_cast<std::uint8_t>(i));
-        EXPECT_NEAR(linear, srgb_decode(i / 255.0), 1e-7);
+        EXPECT_NEAR(linear, linear_of_srgb(i / 255.0), 1e-7);
         EXPECT_EQ(bake::srgb().to_srgb8(linear), i);
     }
     for (int i = 0; i <= 100'000; ++i) {
         const float linear = static_cast<float>(i) / 100'000.0f;
-        const double exact = srgb_encode(linear) * 255.0;
+        const double exact = srgb_of_linear(linear) * 255.0;
         EXPECT_LE(std::abs(bake::srgb().to_srgb8(linear) - exact), 0.5001) << linear;
     }
     EXPECT_EQ(bake::srgb().to_srgb8(-1.0f), 0);
     EXPECT_EQ(bake::srgb().to_srgb8(7.0f), 255);
     for (int i = 0; i < 65'536; i += 17) {
         EXPECT_NEAR(bake::srgb().to_linear(static_cast<std::uint16_t>(i)),
-                    srgb_decode(i / 65'535.0), 1e-7);
+                    linear_of_srgb(i / 65'535.0), 1e-7);
     }
 }
 

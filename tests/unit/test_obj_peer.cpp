@@ -99,7 +99,7 @@ void expect_same(const std::string& text, const bake::SourceScene& scene,
 
 TEST(ObjPeer, ReadsGeneratedFilesAlike) {
     std::mt19937 random(3);
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("scene.mtl", kMaterials);
     for (int i = 0; i < 60; ++i) {
         const std::string text = random_obj(random, 40, 9);
@@ -142,7 +142,7 @@ std::string altered(std::string text, std::mt19937& random) {
 
 TEST(ObjPeer, ReadsAlteredFilesAlikeWhereItReadsThem) {
     std::mt19937 random(4);
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("scene.mtl", kMaterials);
     int compared = 0;
     for (int i = 0; i < 1000; ++i) {

@@ -102,7 +102,7 @@ void alter(std::string& text, std::mt19937& random) {
 
 TEST(ObjPlainLines, MeanTheSameWithTabsForBlanks) {
     std::mt19937 random(2);
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const auto read_or_error = [&](const std::string& text) {
         std::pair<Reading, std::string> result;
         try {

@@ -39,7 +39,7 @@ class ReadMtl : public testing::Test {
     std::string file(const bake::TextureMap& map) const {
         return map.file.lexically_relative(folder_.path()).generic_string();
     }
-    TempFolder folder_;
+    TemporaryFolder folder_;
     bake::FileFinder finder_;
     std::vector<std::string> warnings_;
 };

@@ -32,7 +32,7 @@ class OddSyntax : public testing::TestWithParam<Twin> {};
 
 TEST_P(OddSyntax, ReadsLikeItsPlainTwin) {
     for (const std::size_t chunk : {1, 20, 1 << 18}) {
-        const TempFolder folder;
+        const TemporaryFolder folder;
         EXPECT_EQ(corner_values(read(folder, GetParam().odd, chunk).scene),
                   corner_values(read(GetParam().plain).scene));
     }
@@ -169,7 +169,7 @@ TEST(ReadObj, OrdersMaterialsByFirstUseAndDropsUnused) {
 }
 
 TEST(ReadObj, GivesFacesBeforeAnyUsemtlADefaultMaterialOfNoLibrary) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("m.mtl", "newmtl default\nKd 1 0 0\n");
     const auto reading = read(folder, "mtllib m.mtl\n" + kSquare + "f 1 2 3\n");
     ASSERT_EQ(reading.scene.materials.size(), 1u);
@@ -178,14 +178,14 @@ TEST(ReadObj, GivesFacesBeforeAnyUsemtlADefaultMaterialOfNoLibrary) {
     EXPECT_TRUE(reading.warnings.empty());
 }
 
-float red_of(const TempFolder& folder, const std::string& text) {
+float red_of(const TemporaryFolder& folder, const std::string& text) {
     const auto reading = read(folder, text);
     for (const std::string& warning : reading.warnings) ADD_FAILURE() << warning;
     return reading.scene.materials.at(0).base_color.x;
 }
 
 TEST(ReadObj, FindsLibrariesHoweverTheyAreNamed) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("one.mtl", "newmtl a\nKd 0.25 0 0\n");
     folder.write("two.mtl", "newmtl b\nKd 0.5 0 0\nnewmtl a\nKd 0.9 0 0\n");
     folder.write("sub dir/with blanks.mtl", "\xEF\xBB\xBFnewmtl a b\r\nKd 0.75 0 0\r\n");
@@ -199,7 +199,7 @@ TEST(ReadObj, FindsLibrariesHoweverTheyAreNamed) {
 }
 
 TEST(ReadObj, WarnsOfWhatIsMissingAndGoesOn) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("m.mtl", "newmtl a\n");
     const std::string faces = kSquare + "usemtl q\nf 1 2 3\nusemtl r\nf 1 2 3\nusemtl q\nf 1 2 3\n";
     auto reading = read(folder, "\nmtllib no such.mtl\n" + faces);
@@ -218,7 +218,7 @@ TEST(ReadObj, WarnsOfWhatIsMissingAndGoesOn) {
 }
 
 TEST(ReadObj, WarnsOnceOfEachKindOfThingItLeavesOut) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const std::string text = kSquare +
                              "f 1 2\nf\ncurv 0 1 1 2\nsurf 1 2\ncurv 0 1 1 3\nf 1 2 3\n"
                              "l 1 2\np 1 2\nl 2 3\nbevel on\nlod 2\nfoo\nBar \x01\ns x\ns -1\n";
@@ -260,7 +260,7 @@ class MissingAttribute : public testing::TestWithParam<Missing> {};
 /// `bad_corners` has a digit a corner: 1 where it lacks what is tested.
 TEST_P(MissingAttribute, IsAbsentWithOneWarning) {
     for (const std::size_t chunk : {1, 30, 1 << 18}) {
-        const TempFolder folder;
+        const TemporaryFolder folder;
         const auto reading =
             read(folder, kSquare + "vt 0.5 0.5\nvn 0 0 1\n" + GetParam().text, chunk);
         EXPECT_EQ(reading.warnings, std::vector<std::string>{"scene.obj:" + GetParam().warning});
@@ -343,7 +343,7 @@ TEST(ReadObj, ReadsVertexColoursAsTheyAreEncoded) {
         "v 0 0 0 1 0 0\nv 1 0 0 0.5 0.25 0.2 1\nv 1 1 0\nv 0 1 0 0.1 \\\n 0 1 255\nf 1 2 3 4\n"
         "f 3 2 1\n";
     for (const std::size_t chunk : {1, 30, 1 << 18}) {
-        const TempFolder folder;
+        const TemporaryFolder folder;
         const auto reading = read(folder, text, chunk);
         EXPECT_EQ(reading.warnings, std::vector<std::string>{});
         const std::vector<std::uint32_t> by_position{0x0000FF, 0x334080, 0xE7E7E7, 0xFF001A};
@@ -361,7 +361,7 @@ TEST(ReadObj, ReadsVertexColoursAsTheyAreEncoded) {
 TEST(ReadObj, AColouredMaterialsFactorIsWhatItStates) {
     const double grey = 255 * (1.055 * std::pow(0.8, 1 / 2.4) - 0.055);
     EXPECT_EQ(std::lround(grey), 0xE7);
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("m.mtl", "newmtl kd\nKd 0.5 0.5 0.5\nnewmtl map\nmap_Kd a.png\nnewmtl none\n");
     const auto scene = read(folder,
                             "mtllib m.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nusemtl kd\nf 1 2 3\n"
@@ -407,7 +407,7 @@ TEST(ReadObj, ReadsThePaintOfZBrush) {
                              "#MRGB ff102030ff405060\n#MRGB ff708090\n#MRGB \n#MRGBx\n#MRGB zz\n"
                              "v 0 0 1\n#MRGB 00FFFF00\nf 1 2 3\nf 4 5 1\n";
     for (const std::size_t chunk : {1, 30, 1 << 18}) {
-        const TempFolder folder;
+        const TemporaryFolder folder;
         const auto reading = read(folder, text, chunk);
         EXPECT_EQ(reading.warnings, std::vector<std::string>{});
         const std::vector<std::uint32_t> expected{0xE7E7E7, 0x302010, 0x605040,
@@ -417,7 +417,7 @@ TEST(ReadObj, ReadsThePaintOfZBrush) {
 }
 
 TEST(ReadObj, AnUnnamedMaterialIsOneThatIsNamedNothing) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("m.mtl", "newmtl\nKd 1 0 0\nnewmtl b\nKd 0 1 0\n");
     const std::string face = "f 1 2 3\n";
     const auto reading =
@@ -430,7 +430,7 @@ TEST(ReadObj, AnUnnamedMaterialIsOneThatIsNamedNothing) {
 }
 
 TEST(ReadObj, AMaterialCalledNullIsOneOnlyWhereALibraryHasIt) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("m.mtl", "newmtl a\nKd 1 0 0\n");
     const std::string text = "mtllib m.mtl\n" + kSquare + "usemtl (null)\nf 1 2 3\n";
     const auto none = read(folder, text);
@@ -441,7 +441,7 @@ TEST(ReadObj, AMaterialCalledNullIsOneOnlyWhereALibraryHasIt) {
 }
 
 TEST(ReadObj, TransformsTheUvsOfAMaterialThatAsksForIt) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("m.mtl",
                  "newmtl a\nmap_Kd -s 4 2 1 -o .5 -1 a.png\nnewmtl b\nmap_Kd b.png\n"
                  "newmtl c\nmap_Kd -s 3e38 1 a.png\n");
@@ -521,7 +521,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.what); });
 
 TEST(ReadObj, NamesAMissingFileAndADirectory) {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const auto message = [](const std::filesystem::path& path) -> std::string {
         try {
             bake::read_obj(path, [](const std::string&) {});
@@ -543,7 +543,7 @@ bool same(const bake::SourceScene& a, const bake::SourceScene& b) {
 TEST(ReadObj, DependsNeitherOnThePiecesNorOnTheThreads) {
     std::mt19937 random(1);
     for (int i = 0; i < 10; ++i) {
-        const TempFolder folder;
+        const TemporaryFolder folder;
         const std::string text = random_obj(random, 60, 8);
         const auto whole = read(folder, text, text.size()).scene;
         EXPECT_FALSE(whole.corners.empty());
@@ -592,7 +592,7 @@ TEST(ReadObj, EndsInASoundSceneOrAnErrorHoweverAFileIsAltered) {
     const std::string seed =
         random_obj(random, 6, 7) + "f 1 2 \\\n 3 4\ns off\r\nusemtl x y\rf 1 2 3";
     const std::string odd("\\\n\r \t/-+.0123456789eEvtnfs#\0\xFFnaif", 33);
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("scene.mtl", "newmtl m1\nKd 1 0 0\n");
     int scenes = 0, errors = 0;
     for (int i = 0; i < 2500; ++i) {
@@ -645,7 +645,7 @@ TEST(ReadObj, PositionsFarAwayAreReadInDoubleRelativeToAnOrigin) {
         for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(position[axis], truth[i][axis], 1e-7);
     }
     // The same in pieces of a line or two.
-    EXPECT_EQ(read(TempFolder(), text, 40).scene.positions, reading.scene.positions);
+    EXPECT_EQ(read(TemporaryFolder(), text, 40).scene.positions, reading.scene.positions);
 }
 
 TEST(ReadObj, PositionsRelativeToAnOriginHaveNoMinusZero) {

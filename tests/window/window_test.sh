@@ -390,9 +390,9 @@ check_notices_what_is_saved_while_it_bakes() {
     export XDG_CACHE_HOME=$work/cache
     mkdir "$work/bin" "$work/obj"
     cp "$cw2" "$work/bin/cw2"
-    # It has read everything, and takes its time all the same.
-    printf '#!/bin/sh\n"%s" "$@"\nstatus=$?\ntouch "%s"\nsleep 1\nexit $status\n' \
-        "${cw2%/*}/cw2-bake" "$work/baked" >"$work/bin/cw2-bake"
+    # It has read everything, and ends only once that has changed.
+    printf '#!/bin/sh\n"%s" "$@"\nstatus=$?\ntouch "%s"\nuntil [ -e "%s" ]; do sleep 0.02; done\nexit $status\n' \
+        "${cw2%/*}/cw2-bake" "$work/baked" "$work/edited" >"$work/bin/cw2-bake"
     chmod +x "$work/bin/cw2-bake"
     local scene=$work/obj/a.obj
     printf 'mtllib a.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nusemtl a\nf 1 2 3\n' >"$scene"
@@ -400,6 +400,7 @@ check_notices_what_is_saved_while_it_bakes() {
     (
         until [[ -e $work/baked ]]; do sleep 0.02; done
         printf 'newmtl a\nKd 0 1 0\n' >"$work/obj/a.mtl"
+        touch "$work/edited"
     ) &
     open_window "$work/bin/cw2" "$scene" --size 256x144 --samples 1
     "$cw2" "$scene" --output "$work/green.png" --size 256x144 --samples 1
