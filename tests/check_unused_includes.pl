@@ -105,7 +105,7 @@ png.h           | (?:png_|PNG_)
 sched.h         | (?:sched_|CPU_|cpu_set_t)
 sys/mman.h      | (?:mmap|munmap|madvise|memfd_create|MAP_|PROT_|MADV_|MFD_)
 sys/resource.h  | (?:getrusage|rusage|setrlimit|getrlimit|rlimit|RLIMIT_)
-sys/stat.h      | (?:f?stat|lstat|mkdir|umask|f?chmod|S_I\w+|futimens|mkfifo)\b
+sys/stat.h      | (?:f?stat|lstat|mkdir|umask|f?chmod|S_I\w+|futimens|utimensat|mkfifo)\b
 sys/wait.h      | (?:waitpid|wait4|WIF\w+|WEXITSTATUS)\b
 tbb/blocked_range.h | tbb::blocked_range
 tbb/concurrent_queue.h | tbb::concurrent_\w*queue
