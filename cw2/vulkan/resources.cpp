@@ -275,8 +275,12 @@ void submit_and_wait(const Device& device, VkCommandBuffer commands) {
                                .commandBufferInfoCount = 1,
                                .pCommandBufferInfos = &buffer};
     const Device::Queue queue = device.queue();
-    check(vkQueueSubmit2(queue.get(), 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit2");
-    check(vkQueueWaitIdle(queue.get()), "vkQueueWaitIdle");
+    const VkResult submitted = vkQueueSubmit2(queue.get(), 1, &submit, VK_NULL_HANDLE);
+    const VkResult waited = submitted == VK_SUCCESS ? vkQueueWaitIdle(queue.get()) : submitted;
+    // What the commands use is about to be destroyed.
+    if (waited != VK_SUCCESS) vkDeviceWaitIdle(device.get());
+    check(submitted, "vkQueueSubmit2");
+    check(waited, "vkQueueWaitIdle");
 }
 
 Uploader::Uploader(const Device& device)

@@ -30,6 +30,12 @@ constexpr ImageUse kCopiedFrom{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE
                                VK_ACCESS_2_TRANSFER_READ_BIT};
 constexpr ImageUse kCopiedTo{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT,
                              VK_ACCESS_2_TRANSFER_WRITE_BIT};
+/// Waits for the device, also where something fails.
+struct WaitAtEnd {
+    const Device& device;
+    ~WaitAtEnd() { device.wait_idle(); }
+};
+
 /// Of the latest frame in the smoothed time.
 constexpr double kWeightOfLatest = 0.3;
 
@@ -87,6 +93,7 @@ std::optional<Picture> Presenter::show_and_read_window(const WindowContents& con
     WindowContents again = contents;
     again.redraw = false;
     Buffer pixels;
+    const WaitAtEnd until_they_are_written{device_};
     if (!draw(again, window, &pixels)) return std::nullopt;
     finish();
     Picture picture{swapchain_.extent(), {pixels.mapped.begin(), pixels.mapped.end()}};

@@ -20,6 +20,7 @@ namespace {
 
 constexpr float kFontPixels = 14.0f;     // at scale 1
 constexpr float kOwnFontPixels = 13.0f;  // that ImGui's own font is drawn for
+constexpr int kMostVertices = 65536;     // more than the panel and the help have
 
 /// DejaVu Sans where it comes with the program, else where Debian, Fedora and Arch have it.
 std::optional<std::filesystem::path> font_file() {
@@ -165,21 +166,31 @@ UiPass::UiPass(GLFWwindow* window, const Instance& instance, const Device& devic
                                    .MSAASamples = VK_SAMPLE_COUNT_1_BIT,
                                    .CheckVkResultFn = check_result};
     ImGui_ImplVulkan_Init(&info, pass_.get());
-    upload_font();
+    fill();
 }
 
-UiPass::~UiPass() {
-    ImGui_ImplVulkan_Shutdown();
-    ImGui_ImplGlfw_Shutdown();
+UiPass::Backends::~Backends() {
+    if (ImGui::GetIO().BackendRendererUserData != nullptr) ImGui_ImplVulkan_Shutdown();
+    if (ImGui::GetIO().BackendPlatformUserData != nullptr) ImGui_ImplGlfw_Shutdown();
 }
 
-void UiPass::upload_font() const {
-#if IMGUI_VERSION_NUM >= 19000
-    ImGui_ImplVulkan_CreateFontsTexture();
-#else
+/// Uploads the font, and makes the buffers of vertices as large as they will ever be: one that
+/// could not grow ImGui would free twice.
+void UiPass::fill() const {
     const CommandPool pool = make_command_pool(device_);
     const VkCommandBuffer commands = allocate_commands(device_, pool.get());
     begin_commands(commands);
+    ImDrawData largest;
+    largest.Valid = true;
+    largest.DisplaySize = largest.FramebufferScale = {1.0f, 1.0f};
+    largest.TotalVtxCount = kMostVertices;
+    largest.TotalIdxCount = kMostVertices / 4 * 6;
+    for (std::size_t i = 0; i < framebuffers_.size(); ++i)
+        ImGui_ImplVulkan_RenderDrawData(&largest, commands);
+#if IMGUI_VERSION_NUM >= 19000
+    ImGui_ImplVulkan_CreateFontsTexture();
+    submit_and_wait(device_, commands);
+#else
     ImGui_ImplVulkan_CreateFontsTexture(commands);
     submit_and_wait(device_, commands);
     ImGui_ImplVulkan_DestroyFontUploadObjects();

@@ -24,7 +24,7 @@ class UiPass {
     UiPass(GLFWwindow* window, const Instance& instance, const Device& device, VkFormat format,
            std::uint32_t slots, float scale);
     /// No frame may be in flight.
-    ~UiPass();
+    ~UiPass() = default;
     UiPass(const UiPass&) = delete;
     UiPass& operator=(const UiPass&) = delete;
 
@@ -55,7 +55,15 @@ class UiPass {
         Context& operator=(const Context&) = delete;
     };
 
-    void upload_font() const;
+    /// Ends of ImGui's backends what has begun, also where they could not begin.
+    struct Backends {
+        Backends() = default;
+        ~Backends();
+        Backends(const Backends&) = delete;
+        Backends& operator=(const Backends&) = delete;
+    };
+
+    void fill() const;
 
     const Device& device_;
     GLFWwindow* window_;
@@ -63,6 +71,7 @@ class UiPass {
     UiInput input_;
     RenderPass pass_;
     DescriptorPool descriptor_pool_;
+    Backends backends_;
     std::vector<Framebuffer> framebuffers_;  ///< of each slot
 };
 
