@@ -1,6 +1,7 @@
 #include "cw2/interactive.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <chrono>
@@ -540,6 +541,11 @@ class Session {
 }  // namespace
 
 int run_window(const Options& options, const std::filesystem::path& sources) {
+#ifdef __GLIBC__
+    // What a CPU device's images of the window's size leave behind goes back to the system: by
+    // itself glibc soon takes such blocks from its heap, where those of other sizes leave gaps.
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
     Window window(fmt::format("{} - cw2", options.scene.filename().string()), options.size.width,
                   options.size.height);
     const Instance instance(options.validation, window.instance_extensions());
