@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Bakes the same OBJ with cw2-bake, with npm's gltfpack (WebAssembly) and, where it is installed, with
-# a native gltfpack (Debian's 0.18 makes no tangents), by turns, geometry only, and prints medians and
+# Bakes the same OBJ with cw2-bake, with npm's gltfpack (WebAssembly) and, where they are installed,
+# with a native gltfpack (Debian's 0.18 makes no tangents) and Filament's filamesh (libfilament-tools;
+# half-float positions, tangent frames in 8 bytes), by turns, geometry only, and prints medians and
 # ratios: wall and CPU seconds, peak memory, bytes written; then how far the frames of each are from
 # MikkTSpace's (bench_frames), and what ten times the triangles cost.
 # Usage: tests/bench/bench_bake.sh [OBJ...]    default: the demo scene and a grid of 1 M triangles
@@ -17,6 +18,7 @@ if [[ ! -d $work/node_modules/gltfpack ]]; then
 fi
 gltfpack=(node "$work/node_modules/gltfpack/cli.js")
 native=$(command -v gltfpack || true)
+filamesh=$(command -v filamesh || true)
 
 # make_grid SIDE FILE: a wavy sheet of 2 * SIDE^2 triangles with UVs and normals.
 make_grid() {
@@ -79,8 +81,10 @@ compare() {
     row cw2-bake "$2"
     row 'npm gltfpack' "$2.peer"
     [[ -z $native ]] || row 'native gltfpack' "$2.native"
+    [[ -z $filamesh ]] || row filamesh "$2.filamesh"
     ratio 'ours / npm' "$2" "$2.peer"
     [[ -z $native ]] || ratio 'ours / native' "$2" "$2.native"
+    [[ -z $filamesh ]] || ratio 'ours / filamesh' "$2" "$2.filamesh"
 }
 
 # turn KIND OUR_OPTIONS -- THEIR_OPTIONS: one run of each program.
@@ -99,6 +103,10 @@ turn() {
         -kv -tr "$@"
     [[ -z $native ]] || measure "$kind.native" "$work/theirs.glb" "$native" -i "$scene" \
         -o "$work/theirs.glb" -kv -tr "$@"
+    local packed=(-c)
+    [[ $# -gt 0 ]] || packed=()
+    [[ -z $filamesh ]] || measure "$kind.filamesh" "$work/theirs.filamesh" "$filamesh" "${packed[@]}" \
+        "$scene" "$work/theirs.filamesh"
 }
 
 # frames BITS FORM: how far the frames of both are from MikkTSpace's. Theirs are read from a file

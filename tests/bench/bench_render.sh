@@ -127,4 +127,4 @@ for program in "${programs[@]}"; do
     echo "  cw2 $name: a steady frame of 1 sample: $(median "$name.frame" 1) ms, CPU $(median "$name.frame" 2) ms"
 done
 [[ -z $three ]] ||
-    echo "  three.js: $(median three 1) ms to the first picture; frames: Phong $(median three 2), standard $(median three 3) ms"
+    echo "  three.js on $(tail -1 "$work/three.log"): $(median three 1) ms to the first picture; frames: Phong $(median three 2), standard $(median three 3) ms"

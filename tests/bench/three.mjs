@@ -112,7 +112,7 @@ const server = createServer((request, response) => {
 server.listen(0, '127.0.0.1', () => {
     started = performance.now();
     browser = spawn(chromium, ['--headless=new', '--no-sandbox', '--use-gl=angle',
-        '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist',
+        '--use-angle=gl-egl', '--ignore-gpu-blocklist',
         `--user-data-dir=${profile}`, '--no-first-run', '--disable-extensions',
         `http://127.0.0.1:${server.address().port}/`], { stdio: 'ignore' });
     browser.on('error', (error) => { console.error(String(error)); end(1); });
