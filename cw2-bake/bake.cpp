@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <new>
+#include <optional>
 #include <thread>
 
 #include "common/file_kind.h"
@@ -248,10 +249,11 @@ void write_stats(const Settings& settings, const BakeStats& stats) {
 }
 
 /// The geometry stays one scene from stage to stage, and no stage copies attributes: welding makes
-/// equal corners equal in index; framing makes vertices, which name their attributes; chunks and
-/// meshes name vertices; packing reads each vertex's values once and writes its final bytes. Within
-/// a stage, tasks run over blocks of positions, over halves of halves of a material's triangles, or
-/// over blocks of vertices, so that one large mesh fills all cores as well as many small ones.
+/// vertices of equal corners, which name their attributes; chunks and meshes name vertices; packing
+/// reads each vertex's values once and writes its final bytes. What a stage was made of goes as
+/// soon as none of the later ones asks for it. Within a stage, tasks run over blocks of vertices,
+/// or over halves of halves of a material's triangles, so that one large mesh fills all cores as
+/// well as many small ones.
 std::string run_stages(const Settings& settings, const Warn& warn, StageClock& clock) {
     const std::size_t threads = settings.threads > 0 ? static_cast<std::size_t>(settings.threads)
                                                      : std::thread::hardware_concurrency();
@@ -264,22 +266,24 @@ std::string run_stages(const Settings& settings, const Warn& warn, StageClock& c
     const std::vector<std::filesystem::path> inputs = input_files(scene, settings);
     refuse_overwriting(settings, inputs);
     const std::string rule = settings.depfile ? depfile_text(settings.output, inputs) : "";
-    clock.begin("normals");
-    if (settings.z_up) turn_z_up(scene);
     warn_of_no_area(scene, settings.input, warn);
-    generate_normals(scene);
     clock.begin("textures");
     const TextureSet textures = make_textures(settings, scene, warn);
     if (is_gltf(settings.input)) warn_of_blending(scene.materials, textures.materials, warn);
-    clock.begin("weld");
     const std::vector<UvBudget> budgets = uv_budgets(textures);
-    weld(scene);
+    clock.begin("normals");
+    if (settings.z_up) turn_z_up(scene);
+    std::optional<FirstEqual> positions(scene.positions);
+    generate_normals(scene, *positions);
+    clock.begin("weld");
+    FramedTriangles framed = weld(scene, *positions);
+    positions.reset();
     clock.begin("tangents");
-    const FramedTriangles framed = add_tangents(scene);
-    std::vector<Corner>().swap(scene.corners);  // now in the framed triangles
+    add_tangents(scene, framed);
     clock.begin("chunks");
     const FramedScene framed_scene{scene, framed};
     const ChunkedScene chunked = make_chunks(framed_scene, budgets);
+    RawVector<std::uint32_t>().swap(framed.indices);
     clock.begin("pack");
     PackedGeometry geometry =
         quantise(framed_scene, chunked, budgets, {settings.frame_form, settings.position_form});

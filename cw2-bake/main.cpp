@@ -45,11 +45,12 @@ void run(const bake::Settings& settings) {
     }
 }
 
-/// One heap that keeps what it has got: a bake makes large arrays one after the other, and handing
-/// their pages back to the kernel and asking for new ones takes a fifth of its time.
+/// One heap that keeps what it has got: a bake makes arrays one after the other, and handing their
+/// pages back to the kernel and asking for new ones takes a fifth of its time. Only the largest,
+/// which are of huge pages, lie apart and go when they are done with.
 void keep_memory() {
     mallopt(M_ARENA_MAX, 1);
-    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_MMAP_THRESHOLD, 12 << 20);
     mallopt(M_TRIM_THRESHOLD, 256 << 20);
     mallopt(M_TOP_PAD, 4 << 20);
 }

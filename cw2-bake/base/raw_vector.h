@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -13,6 +14,19 @@ namespace bake {
 /// less time to be touched first than as many bytes of ordinary ones. Does nothing for small
 /// arrays: what stays untouched of the last page would be too much memory beside them.
 void prefer_huge_pages(void* place, std::size_t size);
+
+/// Gives the memory of an array back from its start on, in large pieces; for what is read once, in
+/// order, before the array itself goes.
+class PageReleaser {
+ public:
+    explicit PageReleaser(std::span<std::byte> array) : array_(array) {}
+    /// What comes before `end`, in bytes, is never read again.
+    void release(std::size_t end);
+
+ private:
+    std::span<std::byte> array_;
+    std::size_t released_ = 0;
+};
 
 /// Leaves elements as the memory is. So their pages are touched first by the thread that writes
 /// them, not by the one that makes the array.

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "cw2-bake/base/run_vector.h"
 #include "mesh-format/layout.h"
 
 namespace bake {
@@ -97,10 +98,10 @@ struct SourceScene {
     std::vector<glm::vec3> positions;
     std::vector<glm::vec3> normals;  ///< unit length where a corner refers to it
     std::vector<glm::vec2> uvs;
-    std::vector<Corner> corners;                   ///< 3 a triangle, counter-clockwise
-    std::vector<std::uint32_t> triangle_material;  ///< one a triangle, index into materials
+    std::vector<Corner> corners;  ///< 3 a triangle, counter-clockwise
+    RunVector triangle_material;  ///< one a triangle, index into materials
     /// One a triangle, 0 = not smoothed; empty if every corner has a normal.
-    std::vector<std::uint32_t> smoothing_group;
+    RunVector smoothing_group;
     /// One a corner as tangents.h describes them, or zero where the source gives none; empty if it
     /// gives none at all.
     std::vector<glm::vec4> tangents;

@@ -1,6 +1,9 @@
 #include "cw2-bake/base/text_lines.h"
 
 #include <algorithm>
+#include <span>
+
+#include "common/io.h"
 
 namespace bake {
 
@@ -57,15 +60,30 @@ std::string take_statement(std::string_view text, std::size_t& offset) {
     }
 }
 
+namespace {
+
+/// How many there are in `text`; a CR before `next` LF is none.
+std::size_t line_ends(std::string_view text, std::string_view next) {
+    auto count = static_cast<std::size_t>(std::ranges::count(text, '\n'));
+    for (std::size_t cr = text.find('\r'); cr != text.npos; cr = text.find('\r', cr + 1))
+        count += (cr + 1 < text.size() ? text.substr(cr + 1, 1) : next) != "\n";
+    return count;
+}
+
+}  // namespace
+
 std::size_t line_number(std::string_view text, std::size_t offset) {
     return LineCounter(text).at(offset);
 }
 
 std::size_t LineCounter::at(std::size_t offset) {
-    if (offset < offset_) *this = LineCounter(text_);
-    for (const std::size_t end = std::min(offset, text_.size()); offset_ < end; ++offset_) {
-        const bool first_of_crlf = text_.substr(offset_, 2) == "\r\n";
-        if (is_line_end(text_[offset_]) && !first_of_crlf) ++line_;
+    if (offset < offset_) *this = LineCounter(text_, is_mapped_);
+    constexpr std::size_t kBlock = 1 << 20;
+    for (const std::size_t end = std::min(offset, text_.size()); offset_ < end;) {
+        const std::string_view block = text_.substr(offset_, std::min(kBlock, end - offset_));
+        line_ += line_ends(block, text_.substr(offset_ + block.size(), 1));
+        if (is_mapped_) common::forget_mapped(std::as_bytes(std::span(block)));
+        offset_ += block.size();
     }
     return line_;
 }

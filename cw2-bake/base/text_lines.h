@@ -47,13 +47,16 @@ std::size_t line_number(std::string_view text, std::size_t offset);
 /// before it.
 class LineCounter {
  public:
-    explicit LineCounter(std::string_view text) : text_(text) {}
+    /// Of a text that `is_mapped`, as forget_mapped() wants it, the memory is let go of.
+    explicit LineCounter(std::string_view text, bool is_mapped = false)
+        : text_(text), is_mapped_(is_mapped) {}
 
     /// As line_number() tells it.
     std::size_t at(std::size_t offset);
 
  private:
     std::string_view text_;
+    bool is_mapped_;
     std::size_t offset_ = 0;
     std::size_t line_ = 1;  // that holds text_[offset_]
 };

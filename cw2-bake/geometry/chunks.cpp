@@ -7,10 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <numeric>
 
 #include "cw2-bake/base/raw_vector.h"
 #include "cw2-bake/geometry/chunk_bounds.h"
 #include "cw2-bake/geometry/chunk_split.h"
+#include "cw2-bake/geometry/coarse_split.h"
 #include "cw2-bake/geometry/triangle_order.h"
 
 namespace bake {
@@ -242,87 +246,123 @@ class Assembler {
     std::vector<ChunkedMesh> meshes_;
 };
 
-/// The triangles by material, each material's in the source's order.
-struct TrianglesByMaterial {
-    std::vector<std::size_t> first;  ///< by material, and the end of the last
-    RawVector<CentredTriangle> triangles;
+/// The chunks that a part of a material's triangles is cut into; `out` is for their indices, and
+/// `first_index` counts those of the material that come before.
+std::vector<FinishedChunk> chunks_of(const FramedScene& scene, std::span<const std::uint32_t> part,
+                                     const UvLimit& limit, std::uint32_t first_index,
+                                     std::span<std::uint16_t> out,
+                                     tbb::enumerable_thread_specific<ChunkMaker>& makers) {
+    RawVector<CentredTriangle> triangles(part.size());
+    RawVector<CentredTriangle> spare(part.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, part.size(), 1 << 13),
+                      [&](const auto& block) {
+                          for (std::size_t i = block.begin(); i < block.end(); ++i)
+                              triangles[i] = {scene.centroid(part[i]), part[i]};
+                      });
+    std::vector<std::vector<FinishedChunk>> pieces(part_count(part.size()));
+    split(std::span(triangles), std::span(spare),
+          [&](std::size_t piece, std::span<CentredTriangle> members, std::size_t begin) {
+              makers.local().make(members, limit,
+                                  first_index + static_cast<std::uint32_t>(3 * begin),
+                                  out.subspan(3 * begin, 3 * members.size()), pieces[piece]);
+          });
+    std::vector<FinishedChunk> chunks;
+    for (auto& piece : pieces) std::move(piece.begin(), piece.end(), std::back_inserter(chunks));
+    return chunks;
+}
+
+/// The meshes of one material, of the chunks of its parts; `indices` are those of its triangles.
+std::vector<ChunkedMesh> assemble(std::uint32_t material, const UvLimit& limit,
+                                  std::span<std::vector<FinishedChunk>> parts,
+                                  std::span<std::uint16_t> indices,
+                                  std::span<std::uint32_t> placed) {
+    Assembler assembler(material, limit, placed);
+    for (auto& part : parts)
+        for (FinishedChunk& chunk : part) assembler.add(chunk);
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+        for (const FinishedChunk& chunk : parts[part])
+            for (std::uint16_t& index :
+                 indices.subspan(chunk.record.first_index, chunk.record.index_count))
+                index = static_cast<std::uint16_t>(chunk.vertices[index]);
+        parts[part] = {};
+    });
+    return assembler.take(indices);
+}
+
+/// Calls visit(i) for each, the largest first, so that no thread is left alone with one.
+template <typename Size, typename Visit>
+void largest_first(std::size_t count, const Size& size, const Visit& visit) {
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::greater(), size);
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, 1),
+        [&](const auto& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) visit(order[i]);
+        },
+        tbb::simple_partitioner());
+}
+
+/// The parts of one material.
+struct MaterialParts {
+    std::size_t begin, end;
+    std::size_t first, size;  ///< triangles
 };
 
-TrianglesByMaterial sort_by_material(const FramedScene& framed) {
-    const SourceScene& scene = framed.source;
-    TrianglesByMaterial result;
-    result.first.assign(scene.materials.size() + 1, 0);
-    for (const std::uint32_t material : scene.triangle_material) ++result.first[material + 1];
-    for (std::size_t m = 0; m < scene.materials.size(); ++m) result.first[m + 1] += result.first[m];
-    result.triangles.resize(scene.triangle_material.size());
-    std::vector<std::size_t> next = result.first;
-    for (std::uint32_t t = 0; t < scene.triangle_material.size(); ++t)
-        result.triangles[next[scene.triangle_material[t]]++].index = t;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.triangles.size(), 1 << 13),
-                      [&](const auto& block) {
-                          for (std::size_t i = block.begin(); i < block.end(); ++i) {
-                              CentredTriangle& triangle = result.triangles[i];
-                              const std::uint32_t* corners =
-                                  &framed.framed.indices[3 * std::size_t{triangle.index}];
-                              // Scaled so that no sum of finite positions overflows.
-                              triangle.centroid = 0.25f * framed.position(corners[0]) +
-                                                  0.25f * framed.position(corners[1]) +
-                                                  0.25f * framed.position(corners[2]);
-                          }
-                      });
-    return result;
+std::vector<MaterialParts> by_material(std::span<const CoarseParts::Part> parts) {
+    std::vector<MaterialParts> materials;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (i == 0 || parts[i].material != parts[i - 1].material)
+            materials.push_back({i, i, parts[i].first, 0});
+        materials.back().end = i + 1;
+        materials.back().size += parts[i].size;
+    }
+    return materials;
 }
 
 }  // namespace
 
 ChunkedScene make_chunks(const FramedScene& scene, std::span<const UvBudget> budgets) {
-    TrianglesByMaterial sorted = sort_by_material(scene);
-    tbb::enumerable_thread_specific<ChunkMaker> makers([&] { return ChunkMaker(scene); });
-    // One for all: no vertex belongs to two materials.
-    std::vector<std::uint32_t> placed(scene.framed.vertices.size(), kNone);
     ChunkedScene chunked;
+    CoarseParts coarse = split_coarsely(scene);
+    const auto& parts = coarse.parts;
+    const std::vector<MaterialParts> materials = by_material(parts);
+    std::vector<std::size_t> first_of_material(scene.source.materials.size());
+    for (const MaterialParts& material : materials)
+        first_of_material[parts[material.begin].material] = material.first;
     chunked.indices.resize(scene.framed.indices.size());
-
-    const auto chunks_of = [&](std::uint32_t material) {
-        const std::size_t first = sorted.first[material];
-        const auto triangles =
-            std::span(sorted.triangles).subspan(first, sorted.first[material + 1] - first);
-        const auto indices = std::span(chunked.indices).subspan(3 * first, 3 * triangles.size());
-        const UvLimit limit(budgets[material]);
-        std::vector<std::vector<FinishedChunk>> parts(part_count(triangles.size()));
-        RawVector<CentredTriangle> spare(triangles.size());
-        split(triangles, spare,
-              [&](std::size_t part, std::span<CentredTriangle> members, std::size_t begin) {
-                  makers.local().make(members, limit, static_cast<std::uint32_t>(3 * begin),
-                                      indices.subspan(3 * begin, 3 * members.size()), parts[part]);
-              });
-        Assembler assembler(material, limit, placed);
-        for (auto& part : parts)
-            for (FinishedChunk& chunk : part) assembler.add(chunk);
-        tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-            for (const FinishedChunk& chunk : parts[part])
-                for (std::uint16_t& index :
-                     indices.subspan(chunk.record.first_index, chunk.record.index_count))
-                    index = static_cast<std::uint16_t>(chunk.vertices[index]);
-        });
-        return assembler.take(indices);
+    const auto indices_of = [&](std::size_t first, std::size_t size) {
+        return std::span(chunked.indices).subspan(3 * first, 3 * size);
     };
 
-    // The largest first, so that no thread is left alone with one.
-    std::vector<std::uint32_t> materials;
-    for (std::uint32_t m = 0; m < scene.source.materials.size(); ++m)
-        if (sorted.first[m] < sorted.first[m + 1]) materials.push_back(m);
-    std::ranges::stable_sort(materials, std::greater(), [&](std::uint32_t m) {
-        return sorted.first[m + 1] - sorted.first[m];
-    });
-    std::vector<std::vector<ChunkedMesh>> pieces(scene.source.materials.size());
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, materials.size(), 1),
-        [&](const auto& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i)
-                pieces[materials[i]] = chunks_of(materials[i]);
-        },
-        tbb::simple_partitioner());
+    std::vector<std::vector<FinishedChunk>> finished(parts.size());
+    {
+        tbb::enumerable_thread_specific<ChunkMaker> makers([&] { return ChunkMaker(scene); });
+        largest_first(
+            parts.size(), [&](std::size_t i) { return parts[i].size; },
+            [&](std::size_t i) {
+                const CoarseParts::Part& part = parts[i];
+                const std::size_t before = part.first - first_of_material[part.material];
+                finished[i] =
+                    chunks_of(scene, coarse.triangles_of(part), UvLimit(budgets[part.material]),
+                              static_cast<std::uint32_t>(3 * before),
+                              indices_of(part.first, part.size), makers);
+            });
+    }
+    RawVector<std::uint32_t>().swap(coarse.triangles);
+
+    // One for all: no vertex belongs to two materials.
+    std::vector<std::uint32_t> placed(scene.framed.vertices.size(), kNone);
+    std::vector<std::vector<ChunkedMesh>> pieces(materials.size());
+    largest_first(
+        materials.size(), [&](std::size_t i) { return materials[i].size; },
+        [&](std::size_t i) {
+            const MaterialParts& own = materials[i];
+            const std::uint32_t material = parts[own.begin].material;
+            pieces[i] = assemble(material, UvLimit(budgets[material]),
+                                 std::span(finished).subspan(own.begin, own.end - own.begin),
+                                 indices_of(own.first, own.size), placed);
+        });
     for (auto& part : pieces)
         std::move(part.begin(), part.end(), std::back_inserter(chunked.meshes));
     return chunked;

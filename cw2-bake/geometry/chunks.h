@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "cw2-bake/base/raw_vector.h"
-#include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/geometry/box.h"
-#include "cw2-bake/geometry/tangents.h"
+#include "cw2-bake/geometry/framed_scene.h"
 #include "mesh-format/layout.h"
 
 namespace bake {
@@ -22,24 +21,6 @@ struct UvBudget {
 
     /// Half the step of a UV lattice may be 1/8 texel at most.
     double largest_step() const { return 0.25 / texels; }
-};
-
-/// A scene's triangles over framed vertices.
-struct FramedScene {
-    const SourceScene& source;  ///< its attributes and materials; its corners may be gone
-    const FramedTriangles& framed;
-
-    const glm::vec3& position(std::uint32_t vertex) const {
-        return source.positions[framed.vertices[vertex].corner.position];
-    }
-    const glm::vec3& normal(std::uint32_t vertex) const {
-        return source.normals[framed.vertices[vertex].corner.normal];
-    }
-    /// As the file has it: v = 0 is the top row.
-    glm::vec2 uv(std::uint32_t vertex) const {
-        const glm::vec2& uv = source.uvs[framed.vertices[vertex].corner.uv];
-        return {uv.x, 1.0f - uv.y};
-    }
 };
 
 /// Triangles of one material over at most mesh_format::kMaxMeshVertices vertices, which come in the

@@ -1,12 +1,19 @@
 // Which of many values are equal, told by hashing.
 #pragma once
 
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
+
+#include "cw2-bake/base/raw_vector.h"
 
 namespace bake {
 
@@ -65,84 +72,117 @@ class IndexSet {
     std::size_t size_ = 0;
 };
 
-/// An IndexSet of values that each belong to one of `place_count` places, of which nearly all hold
-/// few: those are chained, which keeps memory accesses close together, and only what exceeds
-/// kMaxChain at one place is hashed. Indices join in the order 0, 1, 2, ...
-class PlacedIndexSet {
+/// For each of some values the first that is equal to it.
+class FirstEqual {
  public:
-    explicit PlacedIndexSet(std::size_t place_count) : head_(place_count, kNone), overflow_(0) {}
+    /// Of fewer than 2^31 values. No component is -0 or NaN, so that equal bits are equal values.
+    template <typename Vector>
+    explicit FirstEqual(const std::vector<Vector>& values);
 
-    /// As IndexSet::find_or_insert; the new index is the number of those in the set.
-    template <typename IsEqual>
-    std::uint32_t find_or_insert(std::uint32_t place, std::uint64_t hash, IsEqual is_equal) {
-        const auto index = static_cast<std::uint32_t>(next_.size());
-        int length = 0;
-        for (std::uint32_t i = head_[place]; i != kNone; i = next_[i], ++length) {
-            if (is_equal(i)) return i;
-        }
-        if (length == kMaxChain) {
-            const std::uint32_t found = overflow_.find_or_insert(hash, index, is_equal);
-            if (found == index) next_.push_back(kNone);
-            return found;
-        }
-        next_.push_back(head_[place]);
-        head_[place] = index;
-        return index;
-    }
+    bool all_differ() const { return first_.empty(); }
+    std::uint32_t operator[](std::uint32_t i) const { return first_.empty() ? i : first_[i]; }
 
  private:
-    static constexpr std::uint32_t kNone = 0xFFFF'FFFF;
-    static constexpr int kMaxChain = 24;
-    std::vector<std::uint32_t> head_;  // by place
-    std::vector<std::uint32_t> next_;  // by index
-    IndexSet overflow_;
+    /// The place of each value's slot among those of its part is the low half of its hash.
+    template <typename Vector>
+    static std::uint64_t hash(const Vector& value) {
+        if constexpr (Vector::length() == 2)
+            return hash_of(value.x, value.y);
+        else
+            return hash_of(value.x, value.y, value.z);
+    }
+    template <typename Vector>
+    bool find(const std::vector<Vector>& values, std::uint32_t part, std::uint32_t parts,
+              std::span<std::uint32_t> slots);
+    static std::uint32_t part_of(std::uint64_t hash, std::uint32_t parts) {
+        return static_cast<std::uint32_t>((hash >> 48) * parts >> 16);
+    }
+
+    RawVector<std::uint32_t> first_;  // empty where no two are equal
 };
 
-/// For each of fewer than 2^31 elements the index of the first that is equal to it. No component is
-/// -0 or NaN, so that equal bits are equal values.
+/// A slot holds an index, and above it the upper bits of the hash. The first of equal values is
+/// found as all of a part are met in their order. Returns whether any two are equal.
 template <typename Vector>
-std::vector<std::uint32_t> first_equal(std::span<const Vector> values) {
-    const auto hash = [&](std::uint32_t i) {
-        const Vector& value = values[i];
-        if constexpr (Vector::length() == 2) {
-            return hash_of(value.x, value.y);
-        } else {
-            return hash_of(value.x, value.y, value.z);
-        }
-    };
-    // A slot holds an index, and above it the upper bits of the hash. More slots than values: no
-    // index has all bits set.
+bool FirstEqual::find(const std::vector<Vector>& values, std::uint32_t part, std::uint32_t parts,
+                      std::span<std::uint32_t> slots) {
+    // More than the last index: no slot in use has all bits set.
     constexpr std::uint32_t kEmpty = 0xFFFF'FFFF;
-    std::vector<std::uint32_t> slots(std::bit_ceil(values.size() * 3 / 2 + 4), kEmpty);
-    const auto index_bits = static_cast<std::uint32_t>(slots.size() - 1);
+    const auto index_bits = static_cast<std::uint32_t>(std::bit_ceil(values.size() + 1) - 1);
+    std::ranges::fill(slots, kEmpty);
+    const auto place_of = [&](std::uint64_t hashed) {
+        return (hashed & 0xFFFF'FFFF) * slots.size() >> 32;
+    };
     const auto find_or_insert = [&](std::uint64_t hashed, std::uint32_t index) {
         const std::uint32_t tag = static_cast<std::uint32_t>(hashed >> 32) & ~index_bits;
-        std::uint32_t place = static_cast<std::uint32_t>(hashed) & index_bits;
-        for (;; place = (place + 1) & index_bits) {
+        for (std::size_t place = place_of(hashed);; ++place) {
+            if (place == slots.size()) place = 0;
             const std::uint32_t slot = slots[place];
-            if (slot == kEmpty) break;
+            if (slot == kEmpty) {
+                slots[place] = tag | index;
+                return index;
+            }
             const std::uint32_t other = slot & index_bits;
             if ((slot & ~index_bits) == tag && values[other] == values[index]) return other;
         }
-        slots[place] = tag | index;
-        return index;
     };
     // The slots are too many for caches: memory is asked for some values ahead.
-    constexpr std::uint32_t kAhead = 16;
-    std::array<std::uint64_t, kAhead> hashes;
-    std::vector<std::uint32_t> first(values.size());
+    constexpr std::size_t kAhead = 16;
+    struct Waiting {
+        std::uint64_t hashed;
+        std::uint32_t index;
+    };
+    std::array<Waiting, kAhead> waiting;
+    std::size_t met = 0;
+    bool some_are_equal = false;
+    const auto settle = [&](const Waiting& one) {
+        first_[one.index] = find_or_insert(one.hashed, one.index);
+        some_are_equal |= first_[one.index] != one.index;
+    };
     const auto count = static_cast<std::uint32_t>(values.size());
-    for (std::uint32_t i = 0; i < count + kAhead; ++i) {
-        if (i >= kAhead) {
-            const std::uint32_t v = i - kAhead;
-            first[v] = find_or_insert(hashes[v % kAhead], v);
-        }
-        if (i < count) {
-            hashes[i % kAhead] = hash(i);
-            __builtin_prefetch(&slots[static_cast<std::uint32_t>(hashes[i % kAhead]) & index_bits]);
-        }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint64_t hashed = hash(values[i]);
+        if (parts > 1 && part_of(hashed, parts) != part) continue;
+        Waiting& place = waiting[met % kAhead];
+        if (met++ >= kAhead) settle(place);
+        place = {hashed, i};
+        __builtin_prefetch(&slots[place_of(hashed)]);
     }
-    return first;
+    for (std::size_t i = met - std::min(met, kAhead); i < met; ++i) settle(waiting[i % kAhead]);
+    return some_are_equal;
+}
+
+/// Values of one part of the hashes each are told apart by one task.
+template <typename Vector>
+FirstEqual::FirstEqual(const std::vector<Vector>& values) : first_(values.size()) {
+    constexpr std::size_t kWorthATask = 1 << 14;
+    const auto parts = static_cast<std::uint32_t>(std::clamp<std::size_t>(
+        values.size() / kWorthATask, 1,
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+    std::vector<std::uint32_t> counts(parts * parts);  // by task and part
+    tbb::parallel_for(std::uint32_t{0}, parts > 1 ? parts : 0, [&](std::uint32_t task) {
+        std::vector<std::uint32_t> own(parts);
+        const std::size_t begin = values.size() * task / parts;
+        const std::size_t end = values.size() * (task + 1) / parts;
+        for (std::size_t i = begin; i < end; ++i) ++own[part_of(hash(values[i]), parts)];
+        std::ranges::copy(own, counts.begin() + task * parts);
+    });
+    if (parts == 1) counts[0] = static_cast<std::uint32_t>(values.size());
+    std::vector<std::size_t> first_slot(parts + 1);
+    for (std::uint32_t part = 0; part < parts; ++part) {
+        std::size_t count = 0;
+        for (std::uint32_t task = 0; task < parts; ++task) count += counts[task * parts + part];
+        first_slot[part + 1] = first_slot[part] + count * 3 / 2 + 4;
+    }
+    RawVector<std::uint32_t> slots(first_slot[parts]);
+    std::vector<char> some_are_equal(parts);
+    tbb::parallel_for(std::uint32_t{0}, parts, [&](std::uint32_t part) {
+        some_are_equal[part] = find(
+            values, part, parts,
+            std::span(slots).subspan(first_slot[part], first_slot[part + 1] - first_slot[part]));
+    });
+    if (std::ranges::none_of(some_are_equal, std::identity()))
+        RawVector<std::uint32_t>().swap(first_);
 }
 
 }  // namespace bake

@@ -73,10 +73,12 @@ struct FaceLanes {
     std::uint32_t preserving[kLanes];  ///< 1 or 0
     std::uint32_t usable[kLanes];      ///< 1 or 0
 
-    void load(std::size_t i, const SourceScene& scene, const Corner* face) {
+    void load(std::size_t i, const SourceScene& scene, const FramedTriangles& triangles,
+              std::size_t face) {
         for (std::size_t k = 0; k < 3; ++k) {
-            position[k].set(i, scene.positions[face[k].position]);
-            uv[k][i] = scene.uvs[face[k].uv];
+            const Corner& corner = triangles.vertices[triangles.indices[3 * face + k]].corner;
+            position[k].set(i, scene.positions[corner.position]);
+            uv[k][i] = scene.uvs[corner.uv];
         }
     }
 
@@ -125,10 +127,11 @@ struct CornerLanes {
     Lanes to_previous;
     Lanes to_next;
 
-    void load(std::size_t i, const SourceScene& scene, const Slot& slot) {
-        face.load(i, scene, &scene.corners[3 * std::size_t{slot.face}]);
+    void load(std::size_t i, const SourceScene& scene, const FramedTriangles& triangles,
+              const Slot& slot) {
+        face.load(i, scene, triangles, slot.face);
         corner[i] = slot.corner - 3 * slot.face;
-        normal.set(i, scene.normals[slot.own.normal]);
+        normal.set(i, scene.normals[triangles.vertices[slot.own].corner.normal]);
     }
 
     CW2_INLINE void compute_edges() {
@@ -178,26 +181,27 @@ CW2_EVERY_CPU void compute(CornerLanes& corners, SpokeLanes& spokes) {
 
 }  // namespace
 
-void Spokes::make(const SourceScene& scene, std::span<const Slot> slots) {
+void Spokes::make(const SourceScene& scene, const FramedTriangles& triangles,
+                  std::span<const Slot> slots) {
     lanes_.resize((slots.size() + kLanes - 1) / kLanes);
     CornerLanes batch{};
     for (std::size_t begin = 0; begin < slots.size(); begin += kLanes) {
         const std::size_t count = std::min(kLanes, slots.size() - begin);
-        for (std::size_t i = 0; i < count; ++i) batch.load(i, scene, slots[begin + i]);
+        for (std::size_t i = 0; i < count; ++i) batch.load(i, scene, triangles, slots[begin + i]);
         compute(batch, lanes_[begin / kLanes]);
     }
 }
 
-std::vector<std::uint32_t> find_unusable_faces(const SourceScene& scene) {
-    const std::size_t face_count = scene.corners.size() / 3;
+std::vector<std::uint32_t> find_unusable_faces(const SourceScene& scene,
+                                               const FramedTriangles& triangles) {
+    const std::size_t face_count = triangles.indices.size() / 3;
     std::vector<std::vector<std::uint32_t>> found(face_count / kFacesPerBlock + 1);
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t block) {
         const std::size_t end = std::min(face_count, (block + 1) * kFacesPerBlock);
         FaceLanes lanes{};
         for (std::size_t begin = block * kFacesPerBlock; begin < end; begin += kLanes) {
             const std::size_t count = std::min(kLanes, end - begin);
-            for (std::size_t i = 0; i < count; ++i)
-                lanes.load(i, scene, &scene.corners[3 * (begin + i)]);
+            for (std::size_t i = 0; i < count; ++i) lanes.load(i, scene, triangles, begin + i);
             compute(lanes);
             for (std::size_t i = 0; i < count; ++i)
                 if (lanes.usable[i] == 0)

@@ -39,7 +39,8 @@ struct SpokeLanes {
 /// Faces seen from one of their corners each.
 class Spokes {
  public:
-    void make(const SourceScene& scene, std::span<const Slot> slots);
+    void make(const SourceScene& scene, const FramedTriangles& triangles,
+              std::span<const Slot> slots);
 
     /// Unit direction of growing u (v) in the plane of the corner's normal, or zero.
     glm::vec3 s(std::size_t i) const { return lanes(i).s.get(i % kLanes); }
@@ -61,6 +62,7 @@ class Spokes {
 };
 
 /// The faces whose UVs span no area, ascending.
-std::vector<std::uint32_t> find_unusable_faces(const SourceScene& scene);
+std::vector<std::uint32_t> find_unusable_faces(const SourceScene& scene,
+                                               const FramedTriangles& triangles);
 
 }  // namespace bake

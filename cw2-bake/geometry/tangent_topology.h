@@ -1,50 +1,44 @@
 // How the corners of triangles hang together at their vertices, for the tangent generator.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "cw2-bake/base/raw_vector.h"
-#include "cw2-bake/base/source_scene.h"
+#include "cw2-bake/geometry/weld.h"
 
 namespace bake {
 
 inline constexpr std::uint32_t kNoSlot = 0xFFFF'FFFF;
 inline constexpr std::uint32_t kFewSlots = 8;
 
-/// The corners at each position of a welded scene: those of position p, ascending, are
-/// corner[first[p]] .. corner[first[p + 1]].
+/// The corners at each vertex: those of vertex v, ascending, are corner[first[v]] ..
+/// corner[first[v + 1]].
 struct CornerLists {
     RawVector<std::uint32_t> first;
     RawVector<std::uint32_t> corner;
 
-    std::span<const std::uint32_t> at(std::uint32_t position) const {
-        return std::span(corner).subspan(first[position], first[position + 1] - first[position]);
+    std::span<const std::uint32_t> at(std::uint32_t vertex) const {
+        return std::span(corner).subspan(first[vertex], first[vertex + 1] - first[vertex]);
     }
 };
 
-CornerLists list_corners(const SourceScene& scene);
+CornerLists list_corners(const FramedTriangles& triangles);
 
 /// A corner, and what its face has to do with others there.
 struct Slot {
-    Corner own;
-    Corner next;  ///< the face's
-    Corner previous;
-    std::uint32_t material;
+    std::uint32_t own;   ///< vertex
+    std::uint32_t next;  ///< the face's
+    std::uint32_t previous;
     std::uint32_t face;
-    std::uint32_t corner;  ///< 3 face + 0, 1 or 2
-
-    /// Two corners of the face are at one position.
-    bool degenerate() const {
-        // Not ||: no processor foresees such faces.
-        return (own.position == next.position) | (own.position == previous.position) |
-               (next.position == previous.position);
-    }
+    std::uint32_t corner;      ///< 3 face + 0, 1 or 2
+    std::uint32_t degenerate;  ///< 1 if two corners of the face are at one position, or 0
 };
 
-/// The corners of some vertices: those of vertex v are the slots first .. end. Degenerate faces
-/// take no part: theirs come last.
+/// The corners of a vertex: the slots first .. end. Degenerate faces take no part: theirs come
+/// last.
 struct VertexSlots {
     std::uint32_t first;  ///< corners of other faces, ascending
     std::uint32_t degenerate;
@@ -54,28 +48,26 @@ struct VertexSlots {
 struct CornerSlots {
     std::vector<VertexSlots> vertices;
     RawVector<Slot> slots;
-    /// Low halves of each slot's next (previous) position; kFewSlots more than there are slots.
+    /// Low halves of each slot's next (previous) vertex; kFewSlots more than there are slots.
     RawVector<std::uint16_t> leaving;
     RawVector<std::uint16_t> arriving;
 
-    /// Takes the vertices at some positions instead of those it has.
-    void assign(const SourceScene& scene, const CornerLists& lists,
-                std::span<const std::uint32_t> positions);
+    /// Takes these vertices, which all have corners, instead of those it has.
+    void assign(const FramedTriangles& triangles, const CornerLists& lists,
+                std::span<const std::uint32_t> of_vertices);
 
  private:
-    void add(const SourceScene& scene, std::span<const std::uint32_t> corners, std::uint32_t first);
-    void sort(std::uint32_t first, std::uint32_t end);
+    void add(const FramedTriangles& triangles, std::span<const std::uint32_t> corners,
+             std::uint32_t first);
 };
 
 /// Which slots at a vertex are neighbours: faces that share an edge there, one leaving along it and
 /// one arriving.
 class SlotLinks {
  public:
-    explicit SlotLinks(const CornerSlots& slots) : slots_(slots) {}
-
     /// Where more than two faces share an edge, the k-th that leaves along it (in face order) and
     /// the k-th that arrives along it are neighbours.
-    void link(const VertexSlots& vertex);
+    void link(const CornerSlots& slots, const VertexSlots& vertex);
 
     /// Walks from `start`, of a vertex that is linked, across the edges at the vertex, both ways
     /// round, and calls visit(slot) for each slot; a false answer ends the way. As each slot has
@@ -90,11 +82,11 @@ class SlotLinks {
 
  private:
     struct Edge {
-        Corner end;  ///< the other one
+        std::uint32_t end;  ///< the other vertex
         std::uint32_t slot;
+        auto operator<=>(const Edge&) const = default;
     };
 
-    const CornerSlots& slots_;
     // Across the edge that leaves (arrives at) the slot's corner: the slot, at the same vertex, of
     // the face on the other side, or kNoSlot.
     std::vector<std::uint32_t> across_leaving_;

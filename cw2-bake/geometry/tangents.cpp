@@ -1,14 +1,13 @@
 #include "cw2-bake/geometry/tangents.h"
 
-#include <tbb/concurrent_queue.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_pipeline.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <utility>
 
 #include "cw2-bake/geometry/tangent_directions.h"
 #include "cw2-bake/geometry/tangent_topology.h"
@@ -22,7 +21,7 @@ using glm::vec4;
 
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 constexpr vec4 kUnreached{1.0f, 0.0f, 0.0f, -1.0f};
-constexpr std::uint32_t kPositionsPerBlock = 256;
+constexpr std::uint32_t kVerticesPerBlock = 256;
 
 bool is_unit(const vec3& v) {
     return std::abs(glm::dot(v, v) - 1.0f) < 1e-3f;
@@ -40,37 +39,36 @@ bool close(const vec3& a, const vec3& b) {
     return glm::dot(a, b) > 0.01f;
 }
 
-/// Makes the framed vertices at some positions; reused for one block of positions after another.
-class FramedBlock {
- public:
-    FramedBlock(const SourceScene& scene, const CornerLists& lists, const Windings& windings)
-        : scene_(scene), lists_(lists), windings_(windings), links_(slots_) {}
+/// Vertices that some corners have instead of those they shared with others.
+struct Splits {
+    std::vector<FramedVertex> vertices;
+    std::vector<std::uint32_t> colors;  ///< one a vertex; empty if the scene has none
+    struct Moved {
+        std::uint32_t corner, vertex;  ///< the latter in `vertices`
+    };
+    std::vector<Moved> moved;
+};
 
-    /// The positions begin .. end.
-    void make(std::uint32_t begin, std::uint32_t end) {
-        positions_.resize(end - begin);
-        std::iota(positions_.begin(), positions_.end(), begin);
-        slots_.assign(scene_, lists_, positions_);
+/// Gives some vertices their tangents; reused for one block of vertices after another.
+class TangentBlock {
+ public:
+    TangentBlock(const SourceScene& scene, const CornerLists& lists, const Windings& windings,
+                 FramedTriangles& triangles)
+        : scene_(scene), lists_(lists), windings_(windings), triangles_(triangles) {}
+
+    /// The vertices begin .. end; returns those that they split into.
+    Splits make(std::uint32_t begin, std::uint32_t end) {
+        vertices_.resize(end - begin);
+        std::iota(vertices_.begin(), vertices_.end(), begin);
+        slots_.assign(triangles_, lists_, vertices_);
         const std::size_t count = slots_.slots.size();
-        spokes_.make(scene_, slots_.slots);
+        spokes_.make(scene_, triangles_, slots_.slots);
         group_.resize(count);
         tangents_.resize(count);
-        vertex_.resize(count);
-        vertices_.clear();
-        colors_.clear();
         for (const VertexSlots& vertex : slots_.vertices) {
             if (!make_plain_vertex(vertex)) make_vertex(vertex);
         }
-    }
-
-    std::size_t vertex_count() const { return vertices_.size(); }
-
-    /// Puts the vertices where number `first` is, and tells each corner its own's number.
-    void store(std::uint32_t first, FramedTriangles& triangles) const {
-        std::copy(vertices_.begin(), vertices_.end(), triangles.vertices.begin() + first);
-        std::copy(colors_.begin(), colors_.end(), triangles.colors.begin() + first);
-        for (std::size_t slot = 0; slot < vertex_.size(); ++slot)
-            triangles.indices[slots_.slots[slot].corner] = first + vertex_[slot];
+        return std::move(splits_);
     }
 
  private:
@@ -81,7 +79,7 @@ class FramedBlock {
         vec4 tangent{0.0f};
     };
 
-    /// Makes the vertex if all its faces are shown to be one group, no two of them opposite. Else
+    /// Sets the tangent if all its faces are shown to be one group, no two of them opposite. Else
     /// answers false.
     bool make_plain_vertex(const VertexSlots& vertex) {
         const std::uint32_t count = vertex.degenerate - vertex.first;
@@ -105,9 +103,7 @@ class FramedBlock {
         if (glm::dot(sum_s, sum_s) < enough * enough || glm::dot(sum_t, sum_t) < enough * enough)
             return false;
         if (!hang_together(slots_, vertex.first, count)) return false;
-        std::fill_n(vertex_.begin() + vertex.first, vertex.end - vertex.first,
-                    static_cast<std::uint32_t>(vertices_.size()));
-        vertices_.push_back({slots_.slots[vertex.first].own, tangent(sum, vertex.first)});
+        triangles_.vertices[slots_.slots[vertex.first].own].tangent = tangent(sum, vertex.first);
         return true;
     }
 
@@ -135,7 +131,7 @@ class FramedBlock {
     /// The faces of one winding that hang together across the edges at the vertex.
     void find_groups(const VertexSlots& vertex) {
         groups_.clear();
-        links_.link(vertex);
+        links_.link(slots_, vertex);
         for (std::uint32_t start = vertex.first; start < vertex.degenerate; ++start) {
             if (group_[start] != kNone || !spokes_.usable(start)) continue;
             const auto index = static_cast<std::uint32_t>(groups_.size());
@@ -204,98 +200,82 @@ class FramedBlock {
         }
     }
 
-    /// One framed vertex for each tangent and colour.
+    /// One vertex for each tangent and colour.
     void split(const VertexSlots& vertex) {
-        const std::size_t first = vertices_.size();
+        const std::uint32_t own = slots_.slots[vertex.first].own;
         const bool colored = !scene_.colors.empty();
-        for (std::uint32_t slot = vertex.first; slot < vertex.end; ++slot) {
-            const std::uint32_t color = colored ? scene_.colors[slots_.slots[slot].corner] : 0;
+        const auto color_of = [&](std::uint32_t slot) {
+            return scene_.colors[slots_.slots[slot].corner];
+        };
+        FramedVertex& kept = triangles_.vertices[own];
+        kept.tangent = tangents_[vertex.first];
+        if (colored) triangles_.colors[own] = color_of(vertex.first);
+        const std::size_t first = splits_.vertices.size();
+        for (std::uint32_t slot = vertex.first + 1; slot < vertex.end; ++slot) {
+            const std::uint32_t color = colored ? color_of(slot) : 0;
+            if (kept.tangent == tangents_[slot] && (!colored || triangles_.colors[own] == color))
+                continue;
             std::size_t v = first;
-            while (v < vertices_.size() &&
-                   (vertices_[v].tangent != tangents_[slot] || (colored && colors_[v] != color)))
+            while (v < splits_.vertices.size() && (splits_.vertices[v].tangent != tangents_[slot] ||
+                                                   (colored && splits_.colors[v] != color)))
                 ++v;
-            if (v == vertices_.size()) {
-                vertices_.push_back({slots_.slots[slot].own, tangents_[slot]});
-                if (colored) colors_.push_back(color);
+            if (v == splits_.vertices.size()) {
+                splits_.vertices.push_back({kept.corner, tangents_[slot]});
+                if (colored) splits_.colors.push_back(color);
             }
-            vertex_[slot] = static_cast<std::uint32_t>(v);
+            splits_.moved.push_back({slots_.slots[slot].corner, static_cast<std::uint32_t>(v)});
         }
     }
 
     const SourceScene& scene_;
     const CornerLists& lists_;
     const Windings& windings_;
-    std::vector<std::uint32_t> positions_;
+    FramedTriangles& triangles_;
+    std::vector<std::uint32_t> vertices_;
     CornerSlots slots_;
     SlotLinks links_;
-    std::vector<FramedVertex> vertices_;
-    std::vector<std::uint32_t> colors_;  // one a vertex; empty if the scene has none
+    Splits splits_;
     // Of each slot:
     Spokes spokes_;
     std::vector<std::uint32_t> group_;  // kNone if none reached it
     std::vector<vec4> tangents_;
-    std::vector<std::uint32_t> vertex_;
     // Of one vertex:
     std::vector<Group> groups_;
     std::vector<std::uint32_t> members_;  // the slots of one group that have usable UVs
 };
 
+/// The new vertices come in the order of the blocks.
+void add_splits(std::vector<Splits>& all, FramedTriangles& triangles) {
+    for (Splits& splits : all) {
+        const auto first = static_cast<std::uint32_t>(triangles.vertices.size());
+        triangles.vertices.insert(triangles.vertices.end(), splits.vertices.begin(),
+                                  splits.vertices.end());
+        triangles.colors.insert(triangles.colors.end(), splits.colors.begin(), splits.colors.end());
+        for (const Splits::Moved& moved : splits.moved)
+            triangles.indices[moved.corner] = first + moved.vertex;
+        splits = {};
+    }
+}
+
 }  // namespace
 
-/// Blocks of positions are made in parallel, numbered in their order, and stored in parallel.
-FramedTriangles add_tangents(const SourceScene& scene) {
-    const CornerLists lists = list_corners(scene);
-    const Windings windings(scene, lists);
-    FramedTriangles result;
-    result.indices.resize(scene.corners.size());
-    result.vertices.resize(scene.corners.size());  // at most; what is left over is never touched
-    if (!scene.colors.empty()) result.colors.resize(scene.corners.size());
-
-    struct Work {
-        FramedBlock* block;
-        std::uint32_t begin;  ///< the first position; then the number of the first vertex
-    };
-    const std::size_t at_once =
-        2 * tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    std::deque<FramedBlock> blocks;
-    tbb::concurrent_queue<FramedBlock*> idle;
-    for (std::size_t i = 0; i < at_once; ++i)
-        idle.push(&blocks.emplace_back(scene, lists, windings));
-    const auto position_count = static_cast<std::uint32_t>(scene.positions.size());
-    std::uint32_t next_position = 0;
-    std::uint32_t next_vertex = 0;
-    const auto take = [&](tbb::flow_control& flow) {
-        Work work{nullptr, next_position};
-        if (next_position == position_count)
-            flow.stop();
-        else
-            idle.try_pop(work.block);
-        next_position += std::min(kPositionsPerBlock, position_count - next_position);
-        return work;
-    };
-    const auto make = [&](const Work& work) {
-        work.block->make(work.begin,
-                         work.begin + std::min(kPositionsPerBlock, position_count - work.begin));
-        return work;
-    };
-    const auto number = [&](const Work& work) {
-        const std::uint32_t first = next_vertex;
-        next_vertex += static_cast<std::uint32_t>(work.block->vertex_count());
-        return Work{work.block, first};
-    };
-    const auto store = [&](const Work& work) {
-        work.block->store(work.begin, result);
-        idle.push(work.block);
-    };
-    using tbb::filter_mode;
-    tbb::parallel_pipeline(at_once,
-                           tbb::make_filter<void, Work>(filter_mode::serial_in_order, take) &
-                               tbb::make_filter<Work, Work>(filter_mode::parallel, make) &
-                               tbb::make_filter<Work, Work>(filter_mode::serial_in_order, number) &
-                               tbb::make_filter<Work, void>(filter_mode::parallel, store));
-    result.vertices.resize(next_vertex);
-    if (!scene.colors.empty()) result.colors.resize(next_vertex);
-    return result;
+void add_tangents(const SourceScene& scene, FramedTriangles& triangles) {
+    if (!scene.colors.empty()) triangles.colors.resize(triangles.vertices.size());
+    std::vector<Splits> splits;
+    {
+        const CornerLists lists = list_corners(triangles);
+        const Windings windings(scene, triangles, lists);
+        tbb::enumerable_thread_specific<TangentBlock> blocks(
+            [&] { return TangentBlock(scene, lists, windings, triangles); });
+        const auto count = static_cast<std::uint32_t>(triangles.vertices.size());
+        splits.resize((std::size_t{count} + kVerticesPerBlock - 1) / kVerticesPerBlock);
+        tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t i) {
+            const auto begin = static_cast<std::uint32_t>(i) * kVerticesPerBlock;
+            splits[i] =
+                blocks.local().make(begin, begin + std::min(kVerticesPerBlock, count - begin));
+        });
+    }
+    add_splits(splits, triangles);
 }
 
 }  // namespace bake

@@ -1,13 +1,31 @@
-// Equal values to equal indices.
+// Corners that are equal become one vertex.
 #pragma once
 
+#include <cstdint>
+#include <glm/vec4.hpp>
+
+#include "cw2-bake/base/raw_vector.h"
 #include "cw2-bake/base/source_scene.h"
+#include "cw2-bake/geometry/index_set.h"
 
 namespace bake {
 
-/// Makes corners equal in their indices where they are equal in their values: each then refers to
-/// the first position, normal and UV of its value. A corner with no UV gets one of (0, 0), which
-/// joins the scene's. Every corner has a normal (see normals.h); nothing else changes.
-void weld(SourceScene& scene);
+struct FramedVertex {
+    Corner corner;      ///< indices into the scene's attributes
+    glm::vec4 tangent;  ///< see add_tangents(), which sets it
+};
+
+/// The triangles of a scene over vertices.
+struct FramedTriangles {
+    RawVector<FramedVertex> vertices;
+    RawVector<std::uint32_t> colors;   ///< one a vertex, as in SourceScene; empty if that has none
+    RawVector<std::uint32_t> indices;  ///< one a corner of the scene
+};
+
+/// Corners share a vertex where they are equal in position, normal, UV and material. Of equal
+/// attributes a vertex has the first one; a missing UV is 0. Every corner has a normal; `positions`
+/// tells which of the scene's are equal. The scene's corners go: what is made of them takes the
+/// place of their memory, bit by bit.
+FramedTriangles weld(SourceScene& scene, const FirstEqual& positions);
 
 }  // namespace bake

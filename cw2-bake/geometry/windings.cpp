@@ -17,24 +17,25 @@ void keep_mixed_vertices(CornerSlots& slots, const Spokes& spokes) {
 
 }  // namespace
 
-Windings::Windings(const SourceScene& scene, const CornerLists& lists)
-    : unusable_(find_unusable_faces(scene)), preserving_(unusable_.size(), -1) {
-    if (unusable_.empty() || unusable_.size() == scene.corners.size() / 3) return;
-    std::vector<std::uint32_t> positions;
+Windings::Windings(const SourceScene& scene, const FramedTriangles& triangles,
+                   const CornerLists& lists)
+    : unusable_(find_unusable_faces(scene, triangles)), preserving_(unusable_.size(), -1) {
+    if (unusable_.empty() || unusable_.size() == triangles.indices.size() / 3) return;
+    std::vector<std::uint32_t> vertices;
     for (const std::uint32_t face : unusable_) {
         for (std::size_t c = 0; c < 3; ++c)
-            positions.push_back(scene.corners[3 * std::size_t{face} + c].position);
+            vertices.push_back(triangles.indices[3 * std::size_t{face} + c]);
     }
-    std::sort(positions.begin(), positions.end());
-    positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
 
     CornerSlots slots;
-    slots.assign(scene, lists, positions);
+    slots.assign(triangles, lists, vertices);
     Spokes spokes;
-    spokes.make(scene, slots.slots);
+    spokes.make(scene, triangles, slots.slots);
     keep_mixed_vertices(slots, spokes);
-    SlotLinks links(slots);
-    for (const VertexSlots& vertex : slots.vertices) links.link(vertex);
+    SlotLinks links;
+    for (const VertexSlots& vertex : slots.vertices) links.link(slots, vertex);
     grow_groups(slots, links, spokes);
 }
 

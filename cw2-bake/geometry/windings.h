@@ -14,7 +14,7 @@ namespace bake {
 /// corner; groups grow one after the other, in the order of their first corner.
 class Windings {
  public:
-    Windings(const SourceScene& scene, const CornerLists& lists);
+    Windings(const SourceScene& scene, const FramedTriangles& triangles, const CornerLists& lists);
 
     /// Whether the UVs of such a face wind as its positions do; `otherwise` where no group reaches
     /// it.

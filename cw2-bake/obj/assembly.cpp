@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
@@ -53,6 +54,10 @@ std::span<const Corner> corners_of(const ObjChunk& chunk) {
     return {reinterpret_cast<const Corner*>(chunk.triangles.data()), chunk.triangles.size() * 3};
 }
 
+std::size_t end_of(const ObjPolygon& polygon) {
+    return std::size_t{polygon.first_triangle} + polygon.corner_count - 2;
+}
+
 ObjCounts counts_of(const SourceScene& scene) {
     return {count32(scene.positions), count32(scene.uvs), count32(scene.normals)};
 }
@@ -70,10 +75,10 @@ class Assembly {
     void append_arrays(const ObjChunk& chunk, std::size_t text_bytes_left);
     void append_colors(const ObjChunk& chunk, std::size_t first_position);
     void append_materials(const ObjChunk& chunk);
-    void append_notes(const ObjChunk& chunk);
+    void append_notes(ObjChunk& chunk, std::size_t text_bytes_left);
     bool resolve(ObjChunk& chunk) const;
     std::uint32_t material_in_use();
-    bool all_good() const;
+    bool is_good(ObjAttribute attribute) const;
     void mend();
     template <typename T>
     void mend(ObjAttribute attribute, std::uint32_t Corner::*index, std::vector<T>& elements);
@@ -126,7 +131,7 @@ void Assembly::append_chunk(ObjChunk& chunk, std::size_t text_bytes_left) {
     has_zero_normal_ |= chunk.has_zero_normal;
     if (chunk.has_relative && !resolve(chunk)) has_invalid_ = true;
     append_materials(chunk);
-    append_notes(chunk);
+    append_notes(chunk, text_bytes_left);
     append_arrays(chunk, text_bytes_left);
 }
 
@@ -174,9 +179,8 @@ void Assembly::append_materials(const ObjChunk& chunk) {
     auto& triangle_material = contents_.scene.triangle_material;
     const std::size_t base = triangle_material.size();
     const auto use_until = [&](std::size_t end) {
-        if (base + end > triangle_material.size()) {
-            triangle_material.resize(base + end, material_in_use());
-        }
+        if (base + end > triangle_material.size())
+            triangle_material.extend(base + end, material_in_use());
     };
     for (const ObjMaterialUse& use : chunk.material_uses) {
         use_until(use.first_triangle);
@@ -186,12 +190,11 @@ void Assembly::append_materials(const ObjChunk& chunk) {
     use_until(chunk.triangles.size());
 }
 
-void Assembly::append_notes(const ObjChunk& chunk) {
+void Assembly::append_notes(ObjChunk& chunk, std::size_t text_bytes_left) {
     const auto first_triangle = static_cast<std::uint32_t>(contents_.scene.corners.size() / 3);
-    for (ObjPolygon polygon : chunk.polygons) {
-        polygon.first_triangle += first_triangle;
-        contents_.polygons.push_back(polygon);
-    }
+    for (ObjPolygon& polygon : chunk.polygons) polygon.first_triangle += first_triangle;
+    append<ObjPolygon>(contents_.polygons, chunk.polygons, chunk.text_bytes[kObjFaceText],
+                       text_bytes_left);
     for (ObjSmoothingUse use : chunk.smoothing_uses) {
         use.first_triangle += first_triangle;
         contents_.smoothing_uses.push_back(use);
@@ -206,11 +209,10 @@ void Assembly::append_notes(const ObjChunk& chunk) {
 }
 
 /// Whether all elements are numbers, all normals have a length, and all indices in range.
-bool Assembly::all_good() const {
-    const ObjCounts counts = counts_of(contents_.scene);
-    return !has_invalid_ && !has_zero_normal_ && !bad_element_[kObjUv] &&
-           !bad_element_[kObjNormal] && max_index_[0] <= counts[0] && max_index_[1] <= counts[1] &&
-           max_index_[2] <= counts[2];
+bool Assembly::is_good(ObjAttribute attribute) const {
+    return !has_invalid_ && !bad_element_[attribute] &&
+           !(attribute == kObjNormal && has_zero_normal_) &&
+           max_index_[attribute] <= counts_of(contents_.scene)[attribute];
 }
 
 /// Parses the statement of a triangle again, now that the bounds of its indices are known.
@@ -262,44 +264,60 @@ void Assembly::warn_of_missing(ObjAttribute attribute, std::size_t count,
 template <typename T>
 void Assembly::mend(ObjAttribute attribute, std::uint32_t Corner::*index,
                     std::vector<T>& elements) {
-    auto polygon = contents_.polygons.begin();
-    std::size_t count = 0, first_triangle = 0;
+    struct Missing {
+        std::size_t count = 0, first_triangle = 0;
+    };
+    const auto& polygons = contents_.polygons;
     auto& corners = contents_.scene.corners;
-    for (std::size_t t = 0; t < corners.size() / 3; ++t) {
-        // A fan states the corners of its other triangles but for the last again.
-        if (polygon != contents_.polygons.end() &&
-            t == polygon->first_triangle + polygon->corner_count - 2) {
-            ++polygon;
+    const auto mend_triangles = [&](std::size_t begin, std::size_t end) {
+        Missing missing;
+        auto polygon = std::ranges::upper_bound(polygons, begin, {}, &ObjPolygon::first_triangle);
+        if (polygon != polygons.begin()) --polygon;
+        for (std::size_t t = begin; t < end; ++t) {
+            // A fan states the corners of its other triangles but for the last again.
+            if (polygon != polygons.end() && t >= end_of(*polygon)) ++polygon;
+            const bool goes_on = polygon != polygons.end() && t > polygon->first_triangle;
+            for (std::size_t k = 0; k < 3; ++k) {
+                std::uint32_t& i = corners[3 * t + k].*index;
+                if (i == kAbsent || (i < elements.size() && !std::isnan(elements[i].x))) continue;
+                i = kAbsent;
+                if (goes_on && k < 2) continue;
+                if (missing.count++ == 0) missing.first_triangle = t;
+            }
         }
-        const bool goes_on = polygon != contents_.polygons.end() && t > polygon->first_triangle;
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::uint32_t& i = corners[3 * t + k].*index;
-            if (i == kAbsent || (i < elements.size() && !std::isnan(elements[i].x))) continue;
-            i = kAbsent;
-            if (goes_on && k < 2) continue;
-            if (count++ == 0) first_triangle = t;
-        }
+        return missing;
+    };
+    constexpr std::size_t kBlock = 1 << 13;
+    const std::size_t triangles = corners.size() / 3;
+    std::vector<Missing> found(triangles / kBlock + 1);
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
+        found[i] = mend_triangles(i * kBlock, std::min(triangles, (i + 1) * kBlock));
+    });
+    Missing all;
+    for (const Missing& missing : found) {
+        if (all.count == 0) all.first_triangle = missing.first_triangle;
+        all.count += missing.count;
     }
     for (T& element : elements) {
         if (std::isnan(element.x)) element = T{0.0f};
     }
-    contents_.lacks_normals |= attribute == kObjNormal && count > 0;
-    warn_of_missing(attribute, count, first_triangle);
+    contents_.lacks_normals |= attribute == kObjNormal && all.count > 0;
+    warn_of_missing(attribute, all.count, all.first_triangle);
 }
 
 void Assembly::mend() {
     SourceScene& scene = contents_.scene;
-    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
+    for (std::size_t i = 0; !is_good(kObjPosition) && i < scene.corners.size(); ++i) {
         if (scene.corners[i].position < scene.positions.size()) continue;
         const Face face = parse_face(i / 3);
         throw_at(text_, name_, face.parsed.error.value());
     }
-    mend(kObjUv, &Corner::uv, scene.uvs);
-    mend(kObjNormal, &Corner::normal, scene.normals);
+    if (!is_good(kObjUv)) mend(kObjUv, &Corner::uv, scene.uvs);
+    if (!is_good(kObjNormal)) mend(kObjNormal, &Corner::normal, scene.normals);
 }
 
 ObjContents Assembly::finish() && {
-    if (!all_good()) mend();
+    mend();
     contents_.colors = std::move(colors_).finish(contents_.scene.positions.size(), notes_);
     for (const ObjNote& note : notes_) {
         const std::string first = note.word.empty() ? "" : ", the first " + note.word;

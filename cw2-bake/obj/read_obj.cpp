@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -65,15 +66,20 @@ void triangulate_polygons(const std::vector<ObjPolygon>& polygons, SourceScene& 
 
 /// Says which triangles are smoothed if some corner has no normal.
 void prepare_missing_normals(const std::vector<ObjSmoothingUse>& uses, SourceScene& scene) {
-    const auto lacks_normal = [](const Corner& corner) { return corner.normal == kAbsent; };
-    if (std::ranges::none_of(scene.corners, lacks_normal)) return;
-    scene.smoothing_group.resize(scene.triangle_material.size(), 0);
-    for (std::size_t i = 0; i < uses.size(); ++i) {
-        const std::size_t end =
-            i + 1 < uses.size() ? uses[i + 1].first_triangle : scene.smoothing_group.size();
-        std::fill(scene.smoothing_group.begin() + uses[i].first_triangle,
-                  scene.smoothing_group.begin() + static_cast<std::ptrdiff_t>(end), uses[i].group);
+    std::atomic<bool> is_missing = false;
+    constexpr std::size_t kBlock = 1 << 14;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.corners.size(), kBlock),
+                      [&](const auto& block) {
+                          for (std::size_t i = block.begin(); i < block.end(); ++i)
+                              if (scene.corners[i].normal == kAbsent) is_missing = true;
+                      });
+    if (!is_missing) return;
+    std::uint32_t group = 0;
+    for (const ObjSmoothingUse& use : uses) {
+        scene.smoothing_group.extend(use.first_triangle, group);
+        group = use.group;
     }
+    scene.smoothing_group.extend(scene.triangle_material.size(), group);
 }
 
 /// Gives corners of materials that transform their UVs new ones.
@@ -93,8 +99,10 @@ void transform_uvs(const std::vector<MtlMaterial>& materials, const std::string&
         ++too_large;
         return glm::vec2{0.0f};
     };
+    RunVector::Iterator triangle = scene.triangle_material.begin();
     for (std::size_t i = 0; i < scene.corners.size(); ++i) {
-        const std::uint32_t material = scene.triangle_material[i / 3];
+        if (i > 0 && i % 3 == 0) ++triangle;
+        const std::uint32_t material = *triangle;
         const MtlTransform& transform = materials[material].transform;
         std::uint32_t& index = scene.corners[i].uv;
         if (index == kAbsent || transform == MtlTransform{}) continue;
@@ -117,7 +125,7 @@ class Libraries {
     /// Adds the files that it reads to `files`.
     Libraries(const std::filesystem::path& obj, std::string_view text, const Warn& warn,
               const std::filesystem::path& root, std::vector<std::filesystem::path>& files)
-        : obj_(obj), lines_(text), warn_(warn), files_(files), finder_(root) {}
+        : obj_(obj), lines_(text, true), warn_(warn), files_(files), finder_(root) {}
 
     /// `offsets` are those of ObjContents::material_offsets.
     void read(const std::vector<ObjStatement>& statements,
@@ -297,7 +305,7 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
     }
     SourceScene& scene = contents.scene;
     if (scene.corners.empty()) throw BakeError(name + ": has no faces");
-    LineCounter lines(text);
+    LineCounter lines(text, true);
     for (const ObjError& warning : contents.warnings)
         warn(fmt::format("{}:{}: {}", name, lines.at(warning.offset), warning.what));
     triangulate_polygons(contents.polygons, scene);

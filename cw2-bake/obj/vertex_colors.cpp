@@ -74,20 +74,21 @@ void color_corners(const std::vector<std::uint32_t>& colors, std::vector<MtlMate
                    SourceScene& scene) {
     if (colors.empty()) return;
     std::vector<char> gives_way(materials.size(), 0);
-    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
-        const std::uint32_t material = scene.triangle_material[i / 3];
-        gives_way[material] |=
-            !materials[material].states_color && colors[scene.corners[i].position];
-    }
+    const auto for_each_corner = [&](auto&& visit) {
+        std::size_t i = 0;
+        for (const RunVector::Run& run : scene.triangle_material.runs())
+            for (; i < 3 * run.end; ++i) visit(colors[scene.corners[i].position], run.number);
+    };
+    for_each_corner([&](std::uint32_t color, std::uint32_t material) {
+        gives_way[material] |= !materials[material].states_color && color;
+    });
     for (std::size_t i = 0; i < materials.size(); ++i) {
         if (gives_way[i]) materials[i].source.base_color = glm::vec3{1.0f};
     }
     scene.colors.reserve(scene.corners.size());
-    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
-        const std::uint32_t color = colors[scene.corners[i].position];
-        const std::uint32_t otherwise = gives_way[scene.triangle_material[i / 3]] ? kGrey : kWhite;
-        scene.colors.push_back(color ? color : otherwise);
-    }
+    for_each_corner([&](std::uint32_t color, std::uint32_t material) {
+        scene.colors.push_back(color ? color : gives_way[material] ? kGrey : kWhite);
+    });
 }
 
 }  // namespace bake

@@ -106,6 +106,10 @@ EarlierBake::EarlierBake(const std::filesystem::path& path) {
     } catch (const std::runtime_error&) {
         return;  // nothing there, or another version, or damaged
     }
+    // Only textures are asked for.
+    for (const auto part : {document_.vertices, std::as_bytes(document_.indices),
+                            document_.encoded_vertices, document_.encoded_indices})
+        common::forget_mapped(part);
     checked_ = std::vector<Checked>(document_.textures.size());
     for (const mesh_format::SourceRecord& source : document_.sources) {
         sources_.emplace(SourceKey{source.key[0], source.key[1]}, &source);

@@ -184,6 +184,8 @@ TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode 
                          const std::filesystem::path& earlier, const Warn& warn,
                          const TextureProgress& progress) {
     const TexturePlan plan = make_plan(materials, mode);
+    if (plan.requests.empty())
+        return {.textures = {}, .materials = std::vector<MaterialTextures>(materials.size())};
     const std::vector<std::optional<SourceKey>> keys = source_keys(plan.requests, mode);
     const EarlierBake earlier_bake(earlier);
     std::vector<std::optional<ImageResult>> results =

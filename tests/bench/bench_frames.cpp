@@ -26,11 +26,18 @@ namespace {
 using bake::SourceScene;
 using mesh_format::TangentFrame;
 
-SourceScene prepared(SourceScene scene) {
-    bake::generate_normals(scene);
-    bake::weld(scene);
-    return scene;
-}
+/// A scene and its vertices.
+struct Framed {
+    SourceScene scene;
+    bake::FramedTriangles triangles;
+
+    explicit Framed(SourceScene from) : scene(std::move(from)) {
+        const bake::FirstEqual positions(scene.positions);
+        bake::generate_normals(scene, positions);
+        triangles = bake::weld(scene, positions);
+        bake::add_tangents(scene, triangles);
+    }
+};
 
 /// With the tangent made orthogonal to the normal, as every form of a vertex has it, and its hand
 /// forgotten, as it hangs on which way a format counts v.
@@ -48,17 +55,17 @@ TangentFrame frame_of(const SourceScene& scene, const bake::FramedVertex& vertex
 /// The true frames, by place.
 class Truth {
  public:
-    explicit Truth(const SourceScene& scene) : scene_(scene), framed_(bake::add_tangents(scene)) {
-        glm::vec3 low = scene.positions.front(), high = low;
-        for (const glm::vec3& p : scene.positions) {
+    explicit Truth(const Framed& framed) : scene_(framed.scene) {
+        glm::vec3 low = scene_.positions.front(), high = low;
+        for (const glm::vec3& p : scene_.positions) {
             low = glm::min(low, p);
             high = glm::max(high, p);
         }
         const glm::vec3 size = high - low;
         // 16 bits for the longest side round by half a step at most; the cells are some steps wide.
         cell_ = std::max({size.x, size.y, size.z}) / 16384.0f;
-        for (const bake::FramedVertex& vertex : framed_.vertices)
-            places_[cell(scene.positions[vertex.corner.position])].push_back(&vertex);
+        for (const bake::FramedVertex& vertex : framed.triangles.vertices)
+            places_[cell(scene_.positions[vertex.corner.position])].push_back(&vertex);
     }
 
     /// The angle to the closest frame near `position`, or -1 if there is no vertex.
@@ -84,20 +91,19 @@ class Truth {
     }
 
     const SourceScene& scene_;
-    bake::FramedTriangles framed_;
     float cell_ = 0;
     std::map<std::tuple<int, int, int>, std::vector<const bake::FramedVertex*>> places_;
 };
 
 void bench(const char* obj, const char* baked, const char* gltf) {
     const auto warn = [](const std::string&) {};
-    const SourceScene source = prepared(bake::read_obj(obj, warn));
+    const Framed source(bake::read_obj(obj, warn));
     const Truth truth(source);
-    const SourceScene peer = prepared(bake::read_gltf(gltf, warn));
+    const Framed peer(bake::read_gltf(gltf, warn));
     std::vector<double> angles;
-    for (const bake::FramedVertex& vertex : bake::add_tangents(peer).vertices) {
+    for (const bake::FramedVertex& vertex : peer.triangles.vertices) {
         const double angle =
-            truth.angle(peer.positions[vertex.corner.position], frame_of(peer, vertex));
+            truth.angle(peer.scene.positions[vertex.corner.position], frame_of(peer.scene, vertex));
         if (angle >= 0) angles.push_back(angle);
     }
     if (angles.empty()) throw std::runtime_error("the glTF has no vertex near one of the OBJ");

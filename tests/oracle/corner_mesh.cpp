@@ -26,7 +26,7 @@ void shuffle(std::vector<Vector>& values, std::vector<bake::Corner>& corners, In
 
 }  // namespace
 
-bake::SourceScene welded_scene(const CornerMesh& mesh) {
+bake::SourceScene scene_of(const CornerMesh& mesh) {
     bake::SourceScene scene;
     for (std::uint32_t c = 0; c < mesh.positions.size(); ++c) {
         // No -0, as from a reader.
@@ -35,9 +35,8 @@ bake::SourceScene welded_scene(const CornerMesh& mesh) {
         scene.uvs.push_back(mesh.uvs[c] + 0.0f);
         scene.corners.push_back({c, c, c});
     }
-    scene.triangle_material.assign(scene.corners.size() / 3, 0);
+    scene.triangle_material.extend(scene.corners.size() / 3, 0);
     scene.materials.resize(1);
-    bake::weld(scene);
     return scene;
 }
 
@@ -55,7 +54,9 @@ bake::SourceScene renumber(const bake::SourceScene& scene, std::uint32_t seed) {
 }
 
 std::vector<glm::vec4> our_tangents(const bake::SourceScene& scene) {
-    const bake::FramedTriangles framed = bake::add_tangents(scene);
+    bake::SourceScene rest = scene;
+    bake::FramedTriangles framed = bake::weld(rest, bake::FirstEqual(rest.positions));
+    bake::add_tangents(rest, framed);
     std::vector<glm::vec4> tangents;
     for (const std::uint32_t vertex : framed.indices)
         tangents.push_back(framed.vertices[vertex].tangent);
@@ -64,7 +65,7 @@ std::vector<glm::vec4> our_tangents(const bake::SourceScene& scene) {
 
 std::vector<CornerMesh> read_obj_by_material(const std::filesystem::path& path) {
     bake::SourceScene scene = bake::read_obj(path, [](const std::string&) {});
-    bake::generate_normals(scene);
+    bake::generate_normals(scene, bake::FirstEqual(scene.positions));
     std::vector<CornerMesh> meshes(scene.materials.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) meshes[i].name = scene.materials[i].name;
     for (std::size_t i = 0; i < scene.corners.size(); ++i) {

@@ -20,13 +20,13 @@ struct CornerMesh {
     std::vector<glm::vec2> uvs;
 };
 
-/// The mesh as a scene of one material, welded.
-bake::SourceScene welded_scene(const CornerMesh& mesh);
+/// The mesh as a scene of one material.
+bake::SourceScene scene_of(const CornerMesh& mesh);
 
 /// The same triangles in the same order over attributes in another order.
 bake::SourceScene renumber(const bake::SourceScene& scene, std::uint32_t seed);
 
-/// Our tangents of a welded scene, one a corner.
+/// Our tangents of a scene, one a corner.
 std::vector<glm::vec4> our_tangents(const bake::SourceScene& scene);
 
 /// The meshes that are small enough to have recorded results, about 15,000 corners in all.

@@ -146,8 +146,8 @@ std::size_t far_when_packed(const CornerMesh& mesh, const Tangents& ours, const 
 
 /// Returns the number of failures, having printed a line about the mesh.
 int compare(const CornerMesh& mesh, const Tangents& theirs) {
-    const bake::SourceScene welded = oracle::welded_scene(mesh);
-    const Tangents ours = oracle::our_tangents(welded);
+    const bake::SourceScene scene = oracle::scene_of(mesh);
+    const Tangents ours = oracle::our_tangents(scene);
     std::size_t equal = 0;
     std::size_t far = 0;
     std::size_t wrong_sign = 0;
@@ -169,7 +169,7 @@ int compare(const CornerMesh& mesh, const Tangents& theirs) {
         "%zu  (oracle without direction %zu)\n",
         mesh.name.c_str(), ours.size(), 100.0 * double(equal) / double(ours.size()), worst, far,
         wrong_sign, without_direction);
-    int failures = check_properties(welded, ours);
+    int failures = check_properties(scene, ours);
     if (static_cast<double>(far) > 1e-4 * static_cast<double>(ours.size()) || wrong_sign != 0) {
         std::printf("    FAILED: the oracle's tangents\n");
         ++failures;

@@ -63,10 +63,14 @@ inline std::vector<CornerValues> corner_values(const bake::SourceScene& scene) {
         values.push_back({{p.x, p.y, p.z},
                           uv,
                           normal,
-                          scene.materials.at(scene.triangle_material.at(i / 3)).name,
-                          scene.smoothing_group.empty() ? 0 : scene.smoothing_group.at(i / 3)});
+                          scene.materials.at(scene.triangle_material[i / 3]).name,
+                          scene.smoothing_group.empty() ? 0 : scene.smoothing_group[i / 3]});
     }
     return values;
+}
+
+inline std::vector<std::uint32_t> numbers(const bake::RunVector& runs) {
+    return {runs.begin(), runs.end()};
 }
 
 /// A well-formed OBJ of `face_count` faces in plain syntax. Positions lie on a paraboloid, so that

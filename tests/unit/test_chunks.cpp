@@ -7,7 +7,9 @@
 #include <glm/geometric.hpp>
 #include <random>
 
+#include "cw2-bake/geometry/chunk_split.h"
 #include "cw2-bake/geometry/chunks.h"
+#include "cw2-bake/geometry/coarse_split.h"
 #include "cw2-bake/geometry/quantise.h"
 
 namespace {
@@ -55,14 +57,53 @@ Sheet make_sheet(std::uint32_t side) {
     // Far from any good order, so that only the cutting can bring neighbours together.
     std::shuffle(triangles.begin(), triangles.end(), std::mt19937(7));
     for (const auto& triangle : triangles) {
-        for (const std::uint32_t vertex : triangle) {
-            sheet.framed.indices.push_back(vertex);
-            sheet.source.corners.push_back(sheet.framed.vertices[vertex].corner);
-        }
+        for (const std::uint32_t vertex : triangle) sheet.framed.indices.push_back(vertex);
     }
-    sheet.source.triangle_material.assign(triangles.size(), 0);
+    sheet.source.triangle_material.extend(triangles.size(), 0);
     sheet.source.materials.resize(1);
     return sheet;
+}
+
+/// The parts that halving all the triangles of a material comes to.
+void halve_whole(std::span<const bake::CentredTriangle> triangles,
+                 std::vector<std::vector<std::uint32_t>>& parts) {
+    if (triangles.size() <= bake::CoarseParts::kMostTriangles) {
+        for (parts.emplace_back(); const bake::CentredTriangle& triangle : triangles)
+            parts.back().push_back(triangle.index);
+        return;
+    }
+    std::vector<bake::CentredTriangle> halves(triangles.size());
+    bake::halve(triangles, halves);
+    halve_whole(std::span(halves).first(halves.size() / 2), parts);
+    halve_whole(std::span(halves).subspan(halves.size() / 2), parts);
+}
+
+TEST(CoarseSplit, ComesToThePartsThatHalvingTheWholeComesTo) {
+    Sheet sheet = make_sheet(700);
+    const std::size_t count = sheet.framed.indices.size() / 3;
+    sheet.source.materials.resize(4);
+    // By turns, so that the large ones are of several runs; the last has nothing.
+    bake::RunVector& material = sheet.source.triangle_material = {};
+    for (std::uint32_t i = 0; material.size() < count; ++i)
+        material.extend(std::min(count, material.size() + 1 + i * 1000), i % 7 == 0 ? 2 : i % 2);
+    const bake::CoarseParts coarse = bake::split_coarsely(sheet.scene());
+    std::size_t next = 0;
+    for (std::uint32_t m = 0; m < 4; ++m) {
+        std::vector<bake::CentredTriangle> triangles;
+        for (std::uint32_t t = 0; t < count; ++t)
+            if (material[t] == m) triangles.push_back({sheet.scene().centroid(t), t});
+        if (triangles.empty()) continue;
+        std::vector<std::vector<std::uint32_t>> parts;
+        halve_whole(triangles, parts);
+        for (const auto& part : parts) {
+            const bake::CoarseParts::Part& own = coarse.parts.at(next++);
+            EXPECT_EQ(own.material, m);
+            const auto of_part = coarse.triangles_of(own);
+            ASSERT_TRUE(std::ranges::equal(of_part, part)) << m;
+        }
+    }
+    EXPECT_EQ(next, coarse.parts.size());
+    EXPECT_GT(next, 3u);
 }
 
 using Point = std::array<float, 3>;

@@ -14,7 +14,7 @@ using bake::SourceScene;
 
 SourceScene scene_of(const std::string& obj) {
     SourceScene scene = read(obj).scene;
-    bake::generate_normals(scene);
+    bake::generate_normals(scene, bake::FirstEqual(scene.positions));
     for (const bake::Corner& corner : scene.corners) {
         const glm::vec3 n = scene.normals.at(corner.normal);
         EXPECT_NEAR(glm::length(n), 1, 1e-6);

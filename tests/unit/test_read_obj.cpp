@@ -126,7 +126,7 @@ TEST(ReadObj, CountsAZeroNormalAsMissing) {
     const auto scene = read(kSquare + "vn 0 0 0\nvn 0 0 1\ns 3\nf 1//1 2//2 3//1\n").scene;
     EXPECT_EQ(scene.corners[0].normal, kAbsent);
     EXPECT_EQ(scene.corners[1].normal, 1u);
-    EXPECT_EQ(scene.smoothing_group, std::vector<std::uint32_t>{3});
+    EXPECT_EQ(numbers(scene.smoothing_group), std::vector<std::uint32_t>{3});
 }
 
 // The letter U, of area 7, whose fan about its first corner would cross its opening.
@@ -165,7 +165,7 @@ TEST(ReadObj, OrdersMaterialsByFirstUseAndDropsUnused) {
     ASSERT_EQ(scene.materials.size(), 2u);
     EXPECT_EQ(scene.materials[0].name, "c");
     EXPECT_EQ(scene.materials[1].name, "a");
-    EXPECT_EQ(scene.triangle_material, (std::vector<std::uint32_t>{0, 1, 0}));
+    EXPECT_EQ(numbers(scene.triangle_material), (std::vector<std::uint32_t>{0, 1, 0}));
 }
 
 TEST(ReadObj, GivesFacesBeforeAnyUsemtlADefaultMaterialOfNoLibrary) {
@@ -329,7 +329,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(ReadObj, KeepsTheSmoothingOfMissingNormals) {
     const auto scene = read(kSquare + "s 3\nf 1//1 2//1 3//1\n").scene;
-    EXPECT_EQ(scene.smoothing_group, std::vector<std::uint32_t>{3});
+    EXPECT_EQ(numbers(scene.smoothing_group), std::vector<std::uint32_t>{3});
 }
 
 /// 0xBBGGRR of the corner, which must be opaque.

@@ -37,10 +37,10 @@ struct Mesh {
         scene.normals = normals;
         scene.uvs = uvs;
         for (const std::uint32_t index : indices) scene.corners.push_back({index, index, index});
-        scene.triangle_material.assign(indices.size() / 3, 0);
+        scene.triangle_material.extend(indices.size() / 3, 0);
         scene.materials.resize(1);
-        bake::weld(scene);
-        const bake::FramedTriangles framed = bake::add_tangents(scene);
+        bake::FramedTriangles framed = bake::weld(scene, bake::FirstEqual(scene.positions));
+        bake::add_tangents(scene, framed);
         std::vector<vec4> tangents;
         for (const std::uint32_t vertex : framed.indices)
             tangents.push_back(framed.vertices[vertex].tangent);
@@ -257,19 +257,21 @@ TEST(Tangents, CornersOfOtherColoursAreOtherVerticesWithTheSameTangent) {
     scene.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     scene.normals = {kUp};
     for (const std::uint32_t i : {0u, 1u, 2u, 0u, 2u, 3u}) scene.corners.push_back({i, 0, i});
-    scene.triangle_material = {0, 0};
+    scene.triangle_material.extend(2, 0);
     scene.materials.resize(1);
-    bake::weld(scene);
-    const bake::FramedTriangles plain = bake::add_tangents(scene);
+    const bake::FramedTriangles triangles = bake::weld(scene, bake::FirstEqual(scene.positions));
+    bake::FramedTriangles plain = triangles;
+    bake::add_tangents(scene, plain);
     EXPECT_EQ(plain.vertices.size(), 4u);
     EXPECT_TRUE(plain.colors.empty());
 
     // The two triangles agree at the first vertex and not at the third.
     scene.colors = {1, 2, 3, 1, 4, 5};
-    const bake::FramedTriangles colored = bake::add_tangents(scene);
+    bake::FramedTriangles colored = triangles;
+    bake::add_tangents(scene, colored);
     ASSERT_EQ(colored.vertices.size(), 5u);
     ASSERT_EQ(colored.colors.size(), 5u);
-    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
+    for (std::size_t i = 0; i < scene.colors.size(); ++i) {
         EXPECT_EQ(colored.colors[colored.indices[i]], scene.colors[i]);
         EXPECT_EQ(colored.vertices[colored.indices[i]].tangent,
                   plain.vertices[plain.indices[i]].tangent);

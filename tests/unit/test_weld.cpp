@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -19,8 +20,7 @@ Values values_of(const glm::vec3& p, const glm::vec3& n, const glm::vec2& uv) {
     return {p.x, p.y, p.z, n.x, n.y, n.z, uv.x, uv.y};
 }
 
-Values corner_of(const SourceScene& scene, std::size_t i) {
-    const bake::Corner& c = scene.corners[i];
+Values corner_of(const SourceScene& scene, const bake::Corner& c) {
     return values_of(scene.positions[c.position], scene.normals[c.normal],
                      c.uv == kAbsent ? glm::vec2{0} : scene.uvs[c.uv]);
 }
@@ -51,46 +51,64 @@ SourceScene random_scene(std::mt19937& random, int triangles, int positions, int
     return scene;
 }
 
-using Indices = std::array<std::uint32_t, 3>;
+/// What became of a scene's corners.
+struct Welded {
+    SourceScene scene;
+    bake::FramedTriangles triangles;
 
-Indices indices_of(const bake::Corner& c) {
-    return {c.position, c.normal, c.uv};
-}
+    explicit Welded(const SourceScene& from) : scene(from) {
+        const bake::FirstEqual positions(scene.positions);
+        triangles = bake::weld(scene, positions);
+    }
+    const bake::Corner& corner(std::size_t i) const {
+        return triangles.vertices[triangles.indices[i]].corner;
+    }
+};
 
-TEST(Weld, MakesCornersEqualInIndexWhereTheyAreEqualInValue) {
+TEST(Weld, MakesOneVertexOfCornersThatAreEqualInValueAndMaterial) {
     std::mt19937 random(1);
     for (int i = 0; i < 200; ++i) {
         // Up to thousands of vertices at one position.
         const SourceScene scene = i % 10 == 0 ? random_scene(random, 2000, 2, 200)
                                               : random_scene(random, 1 + i, 1 + i / 3, 1 + i / 9);
-        SourceScene welded = scene;
-        bake::weld(welded);
-        ASSERT_EQ(welded.corners.size(), scene.corners.size());
-        EXPECT_EQ(welded.triangle_material, scene.triangle_material);
-        std::map<Values, Indices> indices;
-        std::map<Indices, Values> values;
+        const Welded welded(scene);
+        EXPECT_TRUE(welded.scene.corners.empty());
+        ASSERT_EQ(welded.triangles.indices.size(), scene.corners.size());
+        std::map<std::pair<Values, std::uint32_t>, std::uint32_t> vertices;
         for (std::size_t c = 0; c < scene.corners.size(); ++c) {
-            const Values value = corner_of(scene, c);
-            ASSERT_NE(welded.corners[c].uv, kAbsent);
-            ASSERT_EQ(corner_of(welded, c), value) << i;
-            const Indices index = indices_of(welded.corners[c]);
-            ASSERT_EQ(indices.try_emplace(value, index).first->second, index) << i;
-            ASSERT_EQ(values.try_emplace(index, value).first->second, value) << i;
+            const Values value = corner_of(scene, scene.corners[c]);
+            ASSERT_NE(welded.corner(c).uv, kAbsent);
+            ASSERT_EQ(corner_of(welded.scene, welded.corner(c)), value) << i;
+            const std::pair key{value, scene.triangle_material[c / 3]};
+            const std::uint32_t vertex = welded.triangles.indices[c];
+            ASSERT_EQ(vertices.try_emplace(key, vertex).first->second, vertex) << i;
         }
+        EXPECT_EQ(vertices.size(), welded.triangles.vertices.size());
     }
 }
 
-TEST(Weld, TakesTheFirstElementOfEachValue) {
+TEST(Weld, TakesTheFirstElementOfEachValueWhateverTheNumberOfThreads) {
     std::mt19937 random(2);
-    SourceScene scene = random_scene(random, 3000, 700, 90);
-    bake::weld(scene);
-    for (const bake::Corner& c : scene.corners) {
-        const auto first = [](const auto& all, std::uint32_t index) {
-            return std::find(all.begin(), all.end(), all[index]) - all.begin();
-        };
-        EXPECT_EQ(c.position, first(scene.positions, c.position));
-        EXPECT_EQ(c.normal, first(scene.normals, c.normal));
-        EXPECT_EQ(c.uv, first(scene.uvs, c.uv));
+    // Enough positions for several tasks.
+    const SourceScene scene = random_scene(random, 30'000, 70'000, 90);
+    std::map<std::array<float, 3>, std::uint32_t> first;
+    for (std::uint32_t i = 0; i < scene.positions.size(); ++i) {
+        const glm::vec3& p = scene.positions[i];
+        first.try_emplace({p.x, p.y, p.z}, i);
+    }
+    for (const std::size_t threads : {1, 2, 3, 5}) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        const Welded welded(scene);
+        for (std::size_t i = 0; i < scene.corners.size(); ++i) {
+            const glm::vec3& p = scene.positions[scene.corners[i].position];
+            ASSERT_EQ(welded.corner(i).position, first.at({p.x, p.y, p.z})) << threads;
+            const auto first_of = [](const auto& all, std::uint32_t index) {
+                return std::find(all.begin(), all.end(), all[index]) - all.begin();
+            };
+            ASSERT_EQ(welded.corner(i).normal,
+                      first_of(welded.scene.normals, welded.corner(i).normal));
+            ASSERT_EQ(welded.corner(i).uv, first_of(welded.scene.uvs, welded.corner(i).uv));
+        }
     }
 }
 
@@ -100,15 +118,33 @@ TEST(Weld, TreatsAMissingUvAsZero) {
     scene.normals = {{0, 0, 1}};
     scene.uvs = {{1, 1}, {0, 0}};
     scene.corners = {{0, 0, 1}, {1, 0, kAbsent}, {2, 0, 0}};
-    scene.triangle_material = {0};
+    scene.triangle_material.push_back(0);
     scene.materials.resize(1);
-    bake::weld(scene);
-    EXPECT_EQ(scene.corners[1].uv, 1u);
+    EXPECT_EQ(Welded(scene).corner(1).uv, 1u);
     scene.uvs = {{1, 1}};
     scene.corners = {{0, 0, 0}, {1, 0, kAbsent}, {2, 0, kAbsent}};
-    bake::weld(scene);
-    EXPECT_EQ(scene.uvs[scene.corners[1].uv], glm::vec2(0, 0));
-    EXPECT_EQ(scene.corners[1].uv, scene.corners[2].uv);
+    const Welded welded(scene);
+    EXPECT_EQ(welded.scene.uvs[welded.corner(1).uv], glm::vec2(0, 0));
+    EXPECT_EQ(welded.corner(1).uv, welded.corner(2).uv);
+}
+
+TEST(RunVector, HoldsWhatAVectorHolds) {
+    std::mt19937 random(3);
+    for (int i = 0; i < 100; ++i) {
+        std::vector<std::uint32_t> plain;
+        bake::RunVector runs;
+        for (int n = static_cast<int>(random() % 20); n > 0; --n) {
+            const std::uint32_t number = random() % 3;
+            plain.resize(plain.size() + random() % 4, number);
+            runs.extend(plain.size(), number);
+        }
+        ASSERT_EQ(std::vector<std::uint32_t>(runs.begin(), runs.end()), plain);
+        ASSERT_EQ(runs.size(), plain.size());
+        ASSERT_EQ(runs.empty(), plain.empty());
+        for (std::size_t k = 0; k < plain.size(); ++k) ASSERT_EQ(runs[k], plain[k]);
+        for (std::size_t k = 1; k < runs.runs().size(); ++k)
+            ASSERT_NE(runs.runs()[k].number, runs.runs()[k - 1].number);
+    }
 }
 
 TEST(UpAxis, TurnsZToYAndKeepsHandedness) {
