@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace cw2 {
 
@@ -18,6 +19,8 @@ namespace {
 constexpr float kRounding = 1.0f / 64.0f;
 /// Of a depth; devices' floats err by less.
 constexpr float kDepthErrors = 3e-4f;
+/// Triangles that are gathered, see Finder::gather().
+constexpr std::size_t kRun = 4096;
 constexpr float kAlwaysSeen = std::numeric_limits<float>::infinity();
 
 /// A vertex, seen from the camera.
@@ -104,24 +107,44 @@ class Finder {
     }
 
     ShownTriangles shown() {
+        std::erase_if(candidates_, [&](const Candidate& c) { return is_hidden(c); });
         ShownTriangles shown;
-        for (const Candidate& candidate : candidates_) {
-            if (is_hidden(candidate)) continue;
-            const SceneChunk& chunk = scene_.chunks[candidate.chunk];
-            const auto first = static_cast<std::uint32_t>(shown.indices.size());
-            if (shown.ranges.empty() || shown.ranges.back().draw != chunk.draw)
-                shown.ranges.push_back({chunk.draw, first, 0});
-            const std::uint16_t* const corners =
-                scene_.indices.data() +
-                scene_.draws[chunk.draw].index_offset / sizeof(std::uint16_t) + chunk.first_index +
-                candidate.first_index;
-            shown.indices.insert(shown.indices.end(), corners, corners + 3);
-            shown.ranges.back().index_count += 3;
+        shown.indices.reserve(3 * candidates_.size());
+        for (std::size_t first = 0; first < candidates_.size(); first += kRun) {
+            const std::span run =
+                std::span(candidates_).subspan(first, std::min(kRun, candidates_.size() - first));
+            gather(run);
+            for (const Candidate& candidate : run) append(candidate, shown);
         }
         return shown;
     }
 
  private:
+    /// A draw call takes as long as some dozens of triangles: where the order from near to far asks
+    /// for one for every few, those of a draw go together.
+    void gather(std::span<Candidate> run) const {
+        constexpr std::size_t kFew = 32;
+        const auto rank = [&](const Candidate& candidate) {
+            const std::uint32_t draw = scene_.chunks[candidate.chunk].draw;
+            return std::pair(scene_.draws[draw].shading, draw);
+        };
+        std::size_t calls = 0;
+        for (std::size_t i = 1; i < run.size(); ++i) calls += rank(run[i - 1]) != rank(run[i]);
+        if (calls * kFew > run.size()) std::ranges::stable_sort(run, {}, rank);
+    }
+
+    void append(const Candidate& candidate, ShownTriangles& shown) const {
+        const SceneChunk& chunk = scene_.chunks[candidate.chunk];
+        const auto first = static_cast<std::uint32_t>(shown.indices.size());
+        if (shown.ranges.empty() || shown.ranges.back().draw != chunk.draw)
+            shown.ranges.push_back({chunk.draw, first, 0});
+        const std::uint16_t* const corners =
+            scene_.indices.data() + scene_.draws[chunk.draw].index_offset / sizeof(std::uint16_t) +
+            chunk.first_index + candidate.first_index;
+        shown.indices.insert(shown.indices.end(), corners, corners + 3);
+        shown.ranges.back().index_count += 3;
+    }
+
     void see(const glm::vec3& p, SeenCorner& out) const {
         const float x = clip_[0].x * p.x + clip_[1].x * p.y + clip_[2].x * p.z + clip_[3].x;
         const float y = clip_[0].y * p.x + clip_[1].y * p.y + clip_[2].y * p.z + clip_[3].y;
@@ -133,6 +156,28 @@ class Finder {
         const float scale = 1.0f / clip.z;
         return {clip.x * scale * half_.x + center_.x, clip.y * scale * half_.y + center_.y,
                 near_ * scale};
+    }
+
+    /// Whether one of a few pixels' centres is in the triangle or next to its edges.
+    static bool covers_center(const Triangle& t, const PixelRect& centers) {
+        constexpr int kFew = 2;
+        if (centers.right - centers.left >= kFew || centers.bottom - centers.top >= kFew)
+            return true;
+        const float side = signed_area(t) < 0.0f ? -1.0f : 1.0f;
+        for (int y = centers.top; y <= centers.bottom; ++y) {
+            for (int x = centers.left; x <= centers.right; ++x) {
+                bool inside = true;
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const PictureCorner &a = t[i], &b = t[(i + 1) % 3];
+                    const float dx = b.x - a.x, dy = b.y - a.y;
+                    const float at = side * (dx * (static_cast<float>(y) + 0.5f - a.y) -
+                                             dy * (static_cast<float>(x) + 0.5f - a.x));
+                    inside &= at >= -kRounding * (std::abs(dx) + std::abs(dy));
+                }
+                if (inside) return true;
+            }
+        }
+        return false;
     }
 
     /// Draws it if it hides what is behind it. Nothing where it is not seen.
@@ -163,6 +208,7 @@ class Finder {
         const Candidate candidate{
             {centers.left - 1, centers.top - 1, centers.right + 1, centers.bottom + 1},
             (1.0f + kDepthErrors) * near_ / nearest_w};
+        if (!covers_center(triangle, centers)) return std::nullopt;
         // What is hidden now stays so.
         if (depth_.hides(candidate.around, candidate.nearest)) return std::nullopt;
         if (!looks_away && occludes(draw)) depth_.draw(triangle);

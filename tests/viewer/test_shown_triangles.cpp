@@ -251,6 +251,50 @@ TEST(ShownTriangles, AWallHidesWhatIsBehindAndAMaskedOneDoesNot) {
     }
 }
 
+TEST(ShownTriangles, AreFewMoreThanPixelsWhereTrianglesAreTiny) {
+    // Some seven triangles a pixel, in chunks of several draws by turns.
+    constexpr int kColumns = 480, kRows = 36;
+    Soup soup;
+    for (int draw = 0; draw < 4; ++draw) {
+        soup.add_draw(true, false);
+        for (int row = draw * kRows / 4; row < (draw + 1) * kRows / 4; ++row) {
+            std::vector<std::array<glm::vec3, 3>> triangles;
+            for (int column = 0; column < kColumns; ++column) {
+                const auto at = [&](int x, int y) {
+                    return glm::vec3(0.01f * static_cast<float>(column + x - kColumns / 2),
+                                     0.01f * static_cast<float>(row + y - kRows / 2), 0.0f);
+                };
+                triangles.push_back({at(0, 0), at(1, 0), at(1, 1)});
+                triangles.push_back({at(0, 0), at(1, 1), at(0, 1)});
+            }
+            soup.add_chunk(triangles);
+        }
+    }
+    const Picture picture{{{0, 0, 3}, {0, 0, 0}, 1.0f}, {{60, 50}, {40, 20}}};
+    const std::set<Name> shown = names_of(shown_of(soup, picture));
+    const std::set<Name> seen = seen_by_rays(soup, picture);
+    EXPECT_TRUE(std::ranges::includes(shown, seen));
+    EXPECT_GT(seen.size(), 200u);
+    EXPECT_LT(shown.size(), seen.size() * 8 / 5);
+}
+
+TEST(ShownTriangles, FewOfManyDrawsGoTogether) {
+    // Chunks of one triangle, side by side, of two draws by turns.
+    Soup soup;
+    std::vector<cw2::SceneChunk> chunks;
+    for (int draw = 0; draw < 2; ++draw) {
+        soup.add_draw(true, false);
+        for (int i = draw; i < 200; i += 2) {
+            const glm::vec3 at(0.01f * static_cast<float>(i) - 1.0f, 0.0f,
+                               0.001f * static_cast<float>(i));
+            soup.add_chunk({{at, at + glm::vec3(0.1f, 0, 0), at + glm::vec3(0, 0.1f, 0)}});
+        }
+    }
+    const cw2::ShownTriangles shown = shown_of(soup, {{{0, 0, 3}, {0, 0, 0}, 1.0f}, kAll});
+    EXPECT_EQ(names_of(shown).size(), 200u);
+    EXPECT_EQ(shown.ranges.size(), 2u);
+}
+
 TEST(ShownTriangles, ATriangleThroughTheCameraHidesToo) {
     // A floor of two triangles that reaches behind the camera, and tiles below it.
     Soup soup;
