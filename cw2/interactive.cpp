@@ -427,6 +427,8 @@ class Session {
                         make_scene(device_, layouts_, std::move(file), settings));
                 } catch (const std::bad_alloc&) {
                     refuse_for_memory(path);
+                } catch (const VulkanError& error) {
+                    throw VulkanError(path.string() + ": " + error.what());
                 }
             });
     }
@@ -458,7 +460,8 @@ class Session {
     void refuse(const std::string& error) {
         const Wish wish = opening_->wish;
         opening_.reset();
-        report(error, wish.is_reload ? (wish.scene.parent_path() / "").string() : std::string());
+        if (!wish.is_reload) return report(error);
+        report(error, (wish.scene.parent_path() / "").string());
     }
 
     /// False where nothing can be shown now.
@@ -498,10 +501,11 @@ class Session {
 
     /// An error on standard error and, without the folder, in the window; with a folder in the
     /// title, too: it lasts until what is read from there is right again.
-    void report(const std::string& error, const std::string& folder = {}) {
+    void report(const std::string& error, const std::optional<std::string>& folder = {}) {
         fmt::print(stderr, "cw2: {}\n", error);
-        ui_.say(error.starts_with(folder) ? error.substr(folder.size()) : error, true);
-        if (!folder.empty()) title_.set_error(ui_.message().words);
+        const bool begins_with_it = folder && error.starts_with(*folder);
+        ui_.say(begins_with_it ? error.substr(folder->size()) : error, true);
+        if (folder) title_.set_error(ui_.message().words);
     }
 
     static bool same(VkExtent2D a, VkExtent2D b) {

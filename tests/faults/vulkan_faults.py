@@ -141,6 +141,10 @@ class Run:
             return "validation" in line or not line.startswith("cw2:")
         return result == LOST and "validation:" in line and any(words in line for words in OF_LOST)
 
+    def lines(self):
+        """What it has printed."""
+        return (self.folder / "out").read_text().splitlines()
+
     def remove(self):
         shutil.rmtree(self.folder)
 
@@ -151,6 +155,13 @@ FILES = {
     "turn": ["--size", "24x18", "--samples", "1", "--frames", "3", "--output", "%d.exr"],
     "numbers": [*PICTURE, "--pixel", "12,9", "--bench", "2"],
 }
+
+
+WINDOW = ["--size", "80x60", "--samples", "4"]
+# Of a scene that is loaded; frames that are drawn meanwhile do without.
+RELOADING = ["vkAllocateDescriptorSets", "vkAllocateMemory", "vkBindBufferMemory",
+             "vkBindImageMemory", "vkCreateBuffer", "vkCreateCommandPool", "vkCreateDescriptorPool",
+             "vkCreateImage", "vkCreateImageView"]
 
 
 def run_files(arguments, old, new, *setting):
@@ -207,56 +218,99 @@ def check_files(*setting):
         return conclude((scenario, fault, *task.result()) for scenario, fault, task in tasks)
 
 
-def run_window(display, *setting):
-    """A user opens a window, sizes it, shows the panel, opens another file, saves a picture, and ends it."""
-    run = Run(*setting, display=display.name)
-    process = run.start(["--size", "80x60", "--samples", "4", "scene.cw2mesh", "other.cw2mesh"])
-    environment = dict(os.environ, DISPLAY=display.name)
+class User:
+    """Who looks at the window of a run and presses keys."""
 
-    def tool(*arguments):
-        return subprocess.run(["xdotool", *arguments], env=environment, text=True,
+    def __init__(self, run, process):
+        self.run, self.process, self.window = run, process, ""
+        self.environment = dict(os.environ, DISPLAY=run.display)
+
+    def tool(self, *arguments):
+        return subprocess.run(["xdotool", *arguments], env=self.environment, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout.strip()
 
-    def wait_until(condition):
+    def wait_until(self, condition):
         """False if it does not come to pass, or cw2 ends first."""
         end = time.monotonic() + LONGEST
-        while process.poll() is None and time.monotonic() < end:
+        while self.process.poll() is None and time.monotonic() < end:
             if condition():
                 return True
             time.sleep(0.01)
         return False
 
-    def has_said():
-        return (run.folder / "err").stat().st_size > 0
+    def sees_a_picture(self):
+        return (self.wait_until(self.finds_it) and self.wait_until(self.has_the_keyboard)
+                and self.wait_until(lambda: " ms" in self.title()))
 
-    window = ""
+    def finds_it(self):
+        self.window = self.tool("search", "--onlyvisible", "--name", "cw2mesh")
+        return self.window
 
-    def find():
-        nonlocal window
-        window = tool("search", "--onlyvisible", "--name", "cw2mesh")
-        return window
+    def has_the_keyboard(self):
+        self.tool("windowfocus", self.window)
+        return self.tool("getwindowfocus") == self.window
 
-    def shows(name):
-        return tool("getwindowname", window).startswith(name)
+    def title(self):
+        return self.tool("getwindowname", self.window)
 
-    def focused():
-        tool("windowfocus", window)
-        return tool("getwindowfocus") == window
+    def errors(self):
+        return (self.run.folder / "err").stat().st_size
 
-    def pictures():
-        return (run.folder / "out").read_text().count("\n")
+    def takes_a_picture(self, key):
+        """The path of what it is saved in, None if it is not."""
+        printed, errors = len(self.run.lines()), self.errors()
+        self.tool("key", key)
+        self.wait_until(lambda: len(self.run.lines()) > printed or self.errors() > errors)
+        return self.run.folder / self.run.lines()[-1] if len(self.run.lines()) > printed else None
 
-    wrong = []
-    if wait_until(find) and wait_until(focused) and wait_until(lambda: " ms" in tool("getwindowname", window)):
-        tool("key", "Tab", "windowsize", window, "100", "70")
-        tool("key", "Page_Down")
-        run.opened = wait_until(lambda: shows("other") or has_said())
-        for number, key in enumerate(["F12", "shift+F12"], 1):
-            said = (run.folder / "err").stat().st_size
-            tool("key", key)
-            wait_until(lambda: pictures() == number or (run.folder / "err").stat().st_size > said)
-        tool("windowsize", window, "90", "80", "key", "Escape")
-    wrong += run.finish(process)
+
+def run_window(display, *setting):
+    """A window is sized, shows the panel, opens another file, saves pictures, and ends."""
+    run = Run(*setting, display=display.name)
+    process = run.start([*WINDOW, "scene.cw2mesh", "other.cw2mesh"])
+    user, title = User(run, process), ""
+    if user.sees_a_picture():
+        user.tool("key", "Tab", "windowsize", user.window, "100", "70", "key", "Page_Down")
+        user.wait_until(lambda: user.title().startswith("other") or user.errors() > 0)
+        user.takes_a_picture("F12")
+        user.takes_a_picture("shift+F12")
+        title = user.title()
+        user.tool("windowsize", user.window, "90", "80", "key", "Escape")
+    wrong = run.finish(process)
+    if not wrong and run.status == 0 and run.message and not title.startswith("scene"):
+        wrong.append("does not show the old scene")
+    fault = run.fault
+    if not wrong and fault and fault[2] in PASSING and (run.status != 0 or run.message):
+        wrong.append("is no error in a window")
+    return run, wrong
+
+
+def run_reload(display, *setting):
+    """A scene that changes and cannot be loaded leaves the old picture, and may change again."""
+    run = Run(*setting, display=display.name)
+    run.environment["VULKAN_FAULT_AFTER"] = str(run.folder / "armed")
+    process = run.start([*WINDOW, "scene.cw2mesh"])
+    user, pictures = User(run, process), []
+
+    def change():
+        shutil.copy(run.folder / "other.cw2mesh", run.folder / "new")
+        os.replace(run.folder / "new", run.folder / "scene.cw2mesh")
+
+    if user.sees_a_picture():
+        pictures.append(user.takes_a_picture("F12"))
+        (run.folder / "armed").touch()
+        change()
+        user.wait_until(lambda: " failed: " in user.title())
+        pictures.append(user.takes_a_picture("F12"))
+        change()
+        user.wait_until(lambda: " failed: " not in user.title())
+        pictures.append(user.takes_a_picture("F12"))
+        user.tool("key", "Escape")
+    wrong = run.finish(process)
+    if getattr(run, "status", 1) != 0 or not run.message:
+        wrong.append("does not go on with a message")
+    elif len({picture and picture.read_bytes() for picture in pictures}) != 1:
+        wrong.append("does not keep the picture")
     return run, wrong
 
 
@@ -264,26 +318,22 @@ def check_window(*setting):
     displays = [Display() for _ in range(os.cpu_count())]
     free = list(displays)
 
-    def run_somewhere(*setting):
+    def somewhere(run, *setting):
         display = free.pop()
         try:
-            return run_window(display, *setting)
+            return run(display, *setting)
         finally:
             free.append(display)
 
-    def run_fault(fault):
-        run, wrong = run_somewhere(*setting, fault)
-        if fault[2] in PASSING and (getattr(run, "status", 1) != 0 or run.message):
-            wrong.append("is no error in a window")
-        return run, wrong
-
     try:
         with concurrent.futures.ThreadPoolExecutor(len(displays)) as pool:
-            run, wrong = run_somewhere(*setting)
+            run, wrong = somewhere(run_window, *setting)
             assert not wrong and not run.message and run.report.calls, (wrong, run.message)
-            faults = list(faults_of(run.report.calls))
+            faults = [("window", run_window, fault) for fault in faults_of(run.report.calls)]
+            faults += [("reload", run_reload, (name, 1, DEVICE)) for name in RELOADING]
             run.remove()
-            tasks = [("window", fault, pool.submit(run_fault, fault)) for fault in faults]
+            tasks = [(scenario, fault, pool.submit(somewhere, run, *setting, fault))
+                     for scenario, run, fault in faults]
             return conclude((scenario, fault, *task.result()) for scenario, fault, task in tasks)
     finally:
         for display in displays:

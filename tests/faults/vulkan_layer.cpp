@@ -2,9 +2,11 @@
 // It stands between the validation layer, which sees its errors, and the driver, which does not.
 //
 // VULKAN_FAULT="vkCreateBuffer 3 -2": the third call of vkCreateBuffer returns VkResult -2, and
-// after VK_ERROR_DEVICE_LOST all that can say so do. VULKAN_REPORT=FILE: when the instance is
-// destroyed, "call NAME COUNT" of each function, "live TYPE COUNT" of each type with objects left,
-// and "failed" if the fault has struck.
+// after VK_ERROR_DEVICE_LOST all that can say so do. VULKAN_FAULT_AFTER=FILE: the third of those
+// that come once there is that file. VULKAN_REPORT=FILE: when the instance is destroyed, "call NAME
+// COUNT" of each function, "live TYPE COUNT" of each type with objects left, and "failed" if the
+// fault has struck.
+#include <unistd.h>
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
@@ -24,7 +26,9 @@ struct Fault {
     char name[64]{};
     long number = 0;
     int result = VK_SUCCESS;
+    const char* after = std::getenv("VULKAN_FAULT_AFTER");
 
+    bool awaited() const { return after != nullptr && access(after, F_OK) != 0; }
     Fault() {
         const char* const text = std::getenv("VULKAN_FAULT");
         if (text != nullptr && std::sscanf(text, "%63s %ld %d", name, &number, &result) != 3)
@@ -45,12 +49,14 @@ struct Function {
     unsigned traits;
     PFN_vkVoidFunction next = nullptr;
     std::atomic<long> calls = 0;
+    std::atomic<long> counted = 0;  ///< towards the fault
 
     /// What this call is to return; VK_SUCCESS: what the driver does.
     VkResult due() {
-        const long number = ++calls;
+        ++calls;
         if (is_lost && (traits & kLosable) != 0) return VK_ERROR_DEVICE_LOST;
-        if (number != fault.number || std::strcmp(name, fault.name) != 0) return VK_SUCCESS;
+        if (std::strcmp(name, fault.name) != 0 || fault.awaited()) return VK_SUCCESS;
+        if (++counted != fault.number) return VK_SUCCESS;
         has_failed = true;
         const auto result = static_cast<VkResult>(fault.result);
         if (result == VK_ERROR_DEVICE_LOST) is_lost = true;
