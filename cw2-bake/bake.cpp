@@ -100,7 +100,8 @@ TextureSet make_textures(const Settings& settings, const SourceScene& scene, con
         bar.erase();
         warn(warning);
     };
-    return bake_textures(scene.materials, settings.textures, settings.output, warn_without_bar,
+    return bake_textures(scene.materials, {settings.textures, settings.compress}, settings.output,
+                         warn_without_bar,
                          [&bar](double done, std::string_view name) { bar.update(done, name); });
 }
 
@@ -339,9 +340,12 @@ std::string export_baked(const Settings& settings, const Warn& warn) {
         decode(document, name, [](std::size_t count, const auto& decode_mesh) {
             tbb::parallel_for(std::size_t{0}, count, decode_mesh);
         });
+    std::vector<mesh_format::Payload> decoded_payloads(document.textures.size());
+    tbb::parallel_for(std::size_t{0}, decoded_payloads.size(), [&](std::size_t i) {
+        decoded_payloads[i] = decode_payload(document, i, name);
+    });
     std::vector<std::span<const std::byte>> payloads;
-    for (const TextureRecord& texture : document.textures)
-        payloads.push_back(document.payload(texture));
+    for (const mesh_format::Payload& payload : decoded_payloads) payloads.push_back(payload.bytes);
     const std::uint64_t bytes = write_export(document, payloads, settings, warnings.filtered());
     warnings.tell_rest();
     if (settings.depfile) write_depfile(*settings.depfile, rule);

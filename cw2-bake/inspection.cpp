@@ -60,6 +60,8 @@ const char* name_of(TextureFormat format) {
             return "bc4_unorm";
         case TextureFormat::bc5_unorm:
             return "bc5_unorm";
+        case TextureFormat::bc7_srgb:
+            return "bc7_srgb";
     }
     return "";
 }
@@ -127,9 +129,10 @@ void list_textures(const Document& document, std::string& out) {
     for (std::size_t i = 0; i < document.textures.size(); ++i) {
         const TextureRecord& texture = document.textures[i];
         fmt::format_to(
-            std::back_inserter(out), "texture {} '{}': {} x {} {}, {} bytes{}{}\n", i,
+            std::back_inserter(out), "texture {} '{}': {} x {} {}, {} bytes{}{}{}\n", i,
             document.text(texture.name), texture.width, texture.height, name_of(texture.format),
             grouped(texture.size), texture.flags & mesh_format::kClampToEdge ? ", clamped" : "",
+            texture.flags & mesh_format::kCompressed ? ", compressed" : "",
             texture.psnr > 0.0f ? fmt::format(", {:.1f} dB in blocks", texture.psnr) : "");
     }
 }
@@ -210,6 +213,7 @@ json json_of(const Document& document, const TextureRecord& texture) {
             {"height", texture.height},
             {"mips", texture.mip_count},
             {"clamped", (texture.flags & mesh_format::kClampToEdge) != 0},
+            {"compressed", (texture.flags & mesh_format::kCompressed) != 0},
             {"bytes", texture.size},
             {"psnr", number(texture.psnr)}};
 }

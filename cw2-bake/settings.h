@@ -23,7 +23,7 @@ struct Settings {
     mesh_format::FrameForm frame_form = mesh_format::FrameForm::quat48;
     mesh_format::PositionForm position_form = mesh_format::PositionForm::quantised;
     TextureMode textures = TextureMode::bc;
-    bool compress = false;                         ///< store vertices and indices in fewer bytes
+    bool compress = false;                         ///< store geometry and textures in fewer bytes
     int threads = 0;                               ///< 0: one a processor
     std::optional<std::filesystem::path> depfile;  ///< where to write what the output depends on
     std::optional<std::filesystem::path> stats;    ///< where to write what the bake did, as JSON

@@ -29,7 +29,7 @@ NO_TEXTURE = 0xFFFFFFFF
 
 # Texture formats: name, texels along a side of a block, bytes of a block, channels of a texel.
 FORMATS = (("r8_unorm", 1, 1, 1), ("rg8_unorm", 1, 2, 2), ("rgba8_srgb", 1, 4, 4),
-           ("bc1_srgb", 4, 8, 4), ("bc4_unorm", 4, 8, 1), ("bc5_unorm", 4, 16, 2))
+           ("bc1_srgb", 4, 8, 4), ("bc4_unorm", 4, 8, 1), ("bc5_unorm", 4, 16, 2), ("bc7_srgb", 4, 16, 4))
 
 
 class FormatError(ValueError):
@@ -254,6 +254,10 @@ def level_sizes(texture):
         offset += (size + 15) // 16 * 16
 
 
+def whole_size(texture):
+    return sum((size + 15) // 16 * 16 for _, _, _, size in level_sizes(texture))
+
+
 def bc1_texels(block):
     """The 16 texels of a block, row by row."""
     first, second, indices = struct.unpack("<HHI", block)
@@ -285,7 +289,48 @@ def bc5_texels(block):
     return [red + green for red, green in zip(bc4_texels(block[:8]), bc4_texels(block[8:]))]
 
 
-BLOCK_TEXELS = {"bc1_srgb": bc1_texels, "bc4_unorm": bc4_texels, "bc5_unorm": bc5_texels}
+# Of BC7's partitions for two subsets the texels, from the lowest bit, that are in subset 1.
+BC7_SUBSETS = (0xCCCC, 0x8888, 0xEEEE, 0xECC8, 0xC880, 0xFEEC, 0xFEC8, 0xEC80,
+               0xC800, 0xFFEC, 0xFE80, 0xE800, 0xFFE8, 0xFF00, 0xFFF0, 0xF000)
+BC7_WEIGHTS = (0, 9, 18, 27, 37, 46, 55, 64)
+
+
+def bc7_texels(block):
+    bits = int.from_bytes(block, "little")
+    partition = bits >> 2 & 63
+    if bits & 3 != 2 or partition >= len(BC7_SUBSETS):
+        return [b"\0\0\0\xff"] * 16
+    ends = []  # the two of subset 0, the two of subset 1
+    for i in range(4):
+        seven = [(bits >> 8 + 24 * c + 6 * i & 63) << 1 | bits >> 80 + i // 2 & 1 for c in range(3)]
+        ends.append([v << 1 | v >> 6 for v in seven])
+    steps, result = bits >> 82, []
+    for i in range(16):
+        size = 2 if i in (0, 15) else 3
+        weight = BC7_WEIGHTS[steps & (1 << size) - 1]
+        steps >>= size
+        subset = BC7_SUBSETS[partition] >> i & 1
+        result.append(bytes((64 - weight) * a + weight * b + 32 >> 6
+                            for a, b in zip(ends[2 * subset], ends[2 * subset + 1])) + b"\xff")
+    return result
+
+
+BLOCK_TEXELS = {"bc1_srgb": bc1_texels, "bc4_unorm": bc4_texels, "bc5_unorm": bc5_texels,
+                "bc7_srgb": bc7_texels}
+PART_BYTES = 128 << 10
+
+
+def payload(scene, texture):
+    """All levels of a texture, as in a plain file."""
+    stored = scene.texels[texture.offset:texture.offset + texture.size]
+    if not texture.flags & 4:
+        return stored
+    size = whole_size(texture)
+    count = -(-size // PART_BYTES)
+    parts = [unwrap(part, PART_BYTES) for part in split_parts(stored, count)]
+    require([len(part) for part in parts] ==
+            [min(PART_BYTES, size - i * PART_BYTES) for i in range(count)], "compressed texels are damaged")
+    return b"".join(parts)
 
 
 def texels(scene, texture, level=0):
@@ -293,7 +338,7 @@ def texels(scene, texture, level=0):
     have one, rg8 and bc5 two (x and y of a normal), and the others four."""
     width, height, offset, size = list(level_sizes(texture))[level]
     name, side, block_bytes, channels = FORMATS[texture.format]
-    data = scene.texels[texture.offset + offset:texture.offset + offset + size]
+    data = payload(scene, texture)[offset:offset + size]
     if side == 1:
         return width, height, data
     across = -(-width // side)
@@ -306,7 +351,7 @@ def texels(scene, texture, level=0):
     return width, height, b"".join(bytes(row[:width * channels]) for row in rows[:height])
 
 
-# --- Compressed geometry --------------------------------------------------------------------------
+# --- Compressed parts -----------------------------------------------------------------------------
 
 
 @functools.lru_cache(None)
@@ -329,20 +374,20 @@ def zstd():
 def unwrap(frame, largest):
     """What is in a Zstandard frame, if that is at most `largest` bytes."""
     size = zstd().ZSTD_getFrameContentSize(frame, len(frame))
-    require(size <= largest, "encoded geometry is damaged")  # errors are the largest values
+    require(size <= largest, "compressed bytes are damaged")  # errors are the largest values
     data = ctypes.create_string_buffer(size)
-    require(zstd().ZSTD_decompress(data, size, frame, len(frame)) == size, "encoded geometry is damaged")
+    require(zstd().ZSTD_decompress(data, size, frame, len(frame)) == size, "compressed bytes are damaged")
     return data.raw
 
 
 def split_parts(data, count):
-    """The parts of a section of encoded geometry, one a mesh."""
-    require(len(data) >= 4 * count, "encoded geometry does not fit the meshes")
+    """The parts of a section of encoded geometry, one a mesh, or of a compressed payload."""
+    require(len(data) >= 4 * count, "sizes of parts do not fit")
     at, parts = 4 * count, []
     for size in struct.unpack_from(f"<{count}I", data):
         parts.append(data[at:at + size])
         at += size
-    require(at == len(data), "encoded geometry does not fit the meshes")
+    require(at == len(data), "sizes of parts do not fit")
     return parts
 
 
@@ -686,10 +731,12 @@ def check_texture(texture, data):
     require(texture.format < len(FORMATS), "a texture has an unknown format")
     require(0 < texture.width <= 16384 and 0 < texture.height <= 16384, "a texture's size is out of range")
     require(texture.mip_count == max(texture.width, texture.height).bit_length(), "a mip count is wrong")
-    require(texture.size == sum((size + 15) // 16 * 16 for _, _, _, size in level_sizes(texture)),
+    require(texture.flags < 8, "a texture has unknown flags")
+    whole = whole_size(texture)
+    require(texture.size < whole if texture.flags & 4 else texture.size == whole,
             "a texture's texels do not fit its size")
-    payload = data[texture.offset:texture.offset + texture.size]
-    require(len(payload) == texture.size and checksum(payload) == texture.checksum,
+    stored = data[texture.offset:texture.offset + texture.size]
+    require(len(stored) == texture.size and checksum(stored) == texture.checksum,
             "is altered: wrong checksum of a texture's texels")
 
 

@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cstring>
 
+#include "mesh-format/bc7.h"
+
 namespace mesh_format {
 namespace {
 
@@ -82,11 +84,61 @@ void decode_bc4(const std::byte* block, std::byte* out, std::size_t stride, std:
     }
 }
 
+/// The 16 colours of a BC7 block: eight of subset 0, then those of subset 1.
+std::array<std::uint32_t, 16> bc7_colors_of(std::uint64_t low, std::uint64_t high) {
+    const auto bits = [=](std::uint32_t at) {
+        return at >= 64 ? high >> (at - 64) : low >> at | high << (64 - at);
+    };
+    std::array<std::uint32_t, 16> colors;
+    colors.fill(0xFF00'0000u);
+    for (std::uint32_t c = 0; c < 3; ++c) {
+        for (std::uint32_t subset = 0; subset < 2; ++subset) {
+            const std::uint32_t lowest = bits(kBc7LowBits + subset) & 1;
+            const auto end = [&](std::uint32_t i) {
+                const std::uint32_t at = kBc7Ends + 6 * (4 * c + 2 * subset + i);
+                return expand_bc7(static_cast<std::uint32_t>(bits(at) & 63), lowest);
+            };
+            const std::uint32_t first = end(0);
+            const std::uint32_t second = end(1);
+            for (std::uint32_t step = 0; step < 8; ++step) {
+                const auto weight = static_cast<std::uint32_t>(kBc7Weights[step]);
+                colors[8 * subset + step] |=
+                    ((64 - weight) * first + weight * second + 32) >> 6 << 8 * c;
+            }
+        }
+    }
+    return colors;
+}
+
+/// As decode_bc1().
+void decode_bc7(const std::byte* block, std::byte* out, std::size_t stride) {
+    const auto low = load<std::uint64_t>(block);
+    const auto high = load<std::uint64_t>(block + 8);
+    const std::uint64_t partition = low >> 2 & 63;
+    std::array<std::uint32_t, 16> colors;
+    colors.fill(0xFF00'0000u);
+    std::uint32_t subsets = 0;
+    if ((low & 3) == 2 && partition < kBc7Partitions) {
+        colors = bc7_colors_of(low, high);
+        subsets = kBc7Subsets[partition];
+    }
+    // The first texel's step gets a third bit.
+    const std::uint64_t stored = high >> (kBc7Steps - 64);
+    std::uint64_t steps = (stored & ~std::uint64_t{3}) << 1 | (stored & 3);
+    for (int y = 0; y < 4; ++y, out += stride) {
+        for (std::size_t x = 0; x < 4; ++x, steps >>= 3, subsets >>= 1) {
+            std::memcpy(out + 4 * x, &colors[(subsets & 1) << 3 | (steps & 7)], 4);
+        }
+    }
+}
+
 void decode_block(TextureFormat format, const std::byte* block, std::byte* out,
                   std::size_t stride) {
     switch (format) {
         case TextureFormat::bc1_srgb:
             return decode_bc1(block, out, stride);
+        case TextureFormat::bc7_srgb:
+            return decode_bc7(block, out, stride);
         case TextureFormat::bc4_unorm:
             return decode_bc4(block, out, stride, 1);
         default:

@@ -174,7 +174,9 @@ void check_material(const Checker& check, const Document& document, std::size_t 
         if (texture == kNoTexture) return;
         require(texture < document.textures.size(), "a texture does not exist");
         const TextureFormat format = document.textures[texture].format;
-        require(format == plain || format == blocks, "a texture's format does not fit its use");
+        require(format == plain || format == blocks ||
+                    (format == TextureFormat::bc7_srgb && blocks == TextureFormat::bc1_srgb),
+                "a texture's format does not fit its use");
     };
     for (std::size_t use = 0; use < kMapUseCount; ++use) {
         require_texture(material.textures.values[use], kMaps.values[use].plain,
@@ -188,16 +190,19 @@ void check_texture(const Checker& check, const Document& document, std::size_t i
         check.require(condition, "texture", i, what);
     };
     require(valid_text(document, texture.name), "its name lies outside the strings");
-    require(texture.format <= TextureFormat::bc5_unorm, "unknown format");
-    require((texture.flags & ~std::uint32_t{kClampToEdge | kHiddenBeyond}) == 0, "unknown flags");
-    require(texture.flags != kHiddenBeyond, "hides what is beyond it, but does not clamp");
+    require(texture.format <= TextureFormat::bc7_srgb, "unknown format");
+    constexpr std::uint32_t kBorders = kClampToEdge | kHiddenBeyond;
+    require((texture.flags & ~(kBorders | kCompressed)) == 0, "unknown flags");
+    require((texture.flags & kBorders) != kHiddenBeyond,
+            "hides what is beyond it, but does not clamp");
     require(texture.width > 0 && texture.width <= kMaxTextureSize && texture.height > 0 &&
                 texture.height <= kMaxTextureSize,
             "its size is out of range");
     require(texture.mip_count == full_mip_count(texture.width, texture.height),
             "its mip count does not fit its size");
     require(texture.psnr >= 0.0f && texture.psnr <= kExactPsnr, "its PSNR is out of range");
-    require(texture.size == mip_chain_bytes(texture.format, texture.width, texture.height),
+    const std::uint64_t whole = mip_chain_bytes(texture.format, texture.width, texture.height);
+    require(texture.flags & kCompressed ? texture.size < whole : texture.size == whole,
             "its texels do not fit its size");
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh-format/checker.h"
 #include "mesh-format/vertex_stream.h"
 
 namespace mesh_format {
@@ -22,17 +23,19 @@ using Bytes = std::span<const std::byte>;
 // nothing; its table of chunks, which is not compressed, is the 200th part of it.
 constexpr std::uint64_t kLargestRatio = 1000;
 
-/// The parts of an encoded section, one a mesh; their sizes have been checked.
-std::vector<Bytes> parts_of(Bytes section, std::size_t count) {
+/// The parts of an encoded section or payload; none where their sizes do not fit it.
+std::vector<Bytes> parts_of(Bytes whole, std::size_t count) {
     std::vector<Bytes> parts;
-    std::size_t offset = count * sizeof(std::uint32_t);
+    std::uint64_t offset = std::uint64_t{count} * sizeof(std::uint32_t);
+    if (offset > whole.size()) return {};
     for (std::size_t i = 0; i < count; ++i) {
         std::uint32_t size = 0;
-        std::memcpy(&size, section.data() + i * sizeof size, sizeof size);
-        parts.push_back(section.subspan(offset, size));
+        std::memcpy(&size, whole.data() + i * sizeof size, sizeof size);
+        if (!in_range(offset, size, whole.size())) return {};
+        parts.push_back(whole.subspan(offset, size));
         offset += size;
     }
-    return parts;
+    return offset == whole.size() ? parts : std::vector<Bytes>();
 }
 
 using Stream = std::unique_ptr<std::byte[]>;
@@ -60,6 +63,11 @@ bool decode_vertices(const MeshRecord& mesh, Bytes part, std::span<const std::ui
     Stream stream;
     return unwrap(part, vertex_stream_bytes(mesh), stream) &&
            decode_vertices(mesh, indices, stream.get(), out);
+}
+
+void run(const Loop& loop, std::size_t count, const std::function<void(std::size_t)>& task) {
+    if (loop) return loop(count, task);
+    for (std::size_t i = 0; i < count; ++i) task(i);
 }
 
 /// Where a mesh's part of the section ends.
@@ -105,11 +113,7 @@ DecodedGeometry decode(Document& document, std::string_view name, const Loop& lo
                               ": its encoded geometry is damaged");
         }
     };
-    if (loop) {
-        loop(count, decode_mesh);
-    } else {
-        for (std::size_t i = 0; i < count; ++i) decode_mesh(i);
-    }
+    run(loop, count, decode_mesh);
     const std::span all_vertices(geometry.vertices.get(), document.scene.vertex_bytes);
     const std::span all_indices(geometry.indices.get(), document.scene.index_count);
     const MeshRecord& last = document.meshes.back();
@@ -121,6 +125,33 @@ DecodedGeometry decode(Document& document, std::string_view name, const Loop& lo
     document.encoded_indices = {};
     check(document, name);
     return geometry;
+}
+
+Payload decode_payload(const Document& document, std::size_t texture, std::string_view name,
+                       std::uint32_t first_level, const Loop& loop) {
+    const TextureRecord& record = document.textures[texture];
+    const Bytes stored = document.payload(record);
+    if (!(record.flags & kCompressed)) return {stored, {}};
+    const std::uint64_t size = mip_chain_bytes(record.format, record.width, record.height);
+    const std::vector<Bytes> parts = parts_of(stored, (size + kPartBytes - 1) / kPartBytes);
+    const Checker checker(name);
+    const char* const kDamaged = "its compressed texels are damaged";
+    checker.require(!parts.empty(), "texture", texture, kDamaged);
+    std::uint64_t begin = 0;
+    for (std::uint32_t level = 0; level < first_level; ++level)
+        begin += mip_bytes(record.format, record.width, record.height, level);
+    const std::size_t first = begin / kPartBytes;
+    Payload payload{{}, std::make_unique_for_overwrite<std::byte[]>(size)};
+    payload.bytes = {payload.memory.get(), size};
+    run(loop, parts.size() - first, [&](std::size_t i) {
+        const Bytes part = parts[first + i];
+        const std::uint64_t offset = (first + i) * kPartBytes;
+        const std::uint64_t expected = std::min(kPartBytes, size - offset);
+        const std::size_t decoded =
+            ZSTD_decompress(payload.memory.get() + offset, expected, part.data(), part.size());
+        checker.require(decoded == expected, "texture", texture, kDamaged);
+    });
+    return payload;
 }
 
 }  // namespace mesh_format

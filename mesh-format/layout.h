@@ -251,7 +251,8 @@ struct MaterialRecord {
     PerMap<std::uint32_t> textures;
 };
 
-/// The blocks are those of the Khronos Data Format Specification 1.3, 4 x 4 texels each. A normal
+/// The blocks are those of the Khronos Data Format Specification 1.3, 4 x 4 texels each; of BC7
+/// those of mode 1 with one of the first kBc7Partitions partitions. A normal
 /// map holds 0.5 n + 0.5 of x and y alone, and z = sqrt(max(0, 1 - x^2 - y^2)).
 enum class TextureFormat : std::uint32_t {
     r8_unorm,
@@ -260,13 +261,15 @@ enum class TextureFormat : std::uint32_t {
     bc1_srgb,   ///< opaque red, green and blue
     bc4_unorm,  ///< red
     bc5_unorm,  ///< red and green
+    bc7_srgb,   ///< opaque red, green and blue
 };
+inline constexpr std::uint32_t kBc7Partitions = 16;
 
 /// What is the same for all textures of one use.
 struct MapInfo {
     const char* name;         ///< for people
     TextureFormat plain;      ///< the format of its textures
-    TextureFormat in_blocks;  ///< the same, in blocks
+    TextureFormat in_blocks;  ///< the same, in blocks; colours may be in bc7_srgb, too
 };
 inline constexpr PerMap<MapInfo> kMaps{{
     {"base colour", TextureFormat::rgba8_srgb, TextureFormat::bc1_srgb},
@@ -282,11 +285,15 @@ enum TextureFlags : std::uint32_t {
     /// Beside the other, of an alpha mask that hides all along its edges: it is 0 beyond them. The
     /// edges of small levels have means of what is inside, which would go on without end.
     kHiddenBeyond = 2,
+    kCompressed = 4,  ///< the payload is stored as kPartBytes says
 };
 
 /// A texture's payload is its complete mip chain, largest level first, each level's rows (of texels
 /// or of blocks) tightly packed from the top, each level starting at a multiple of kMipAlignment
 /// from the first. Blocks that reach over the right or lower edge hold anything there.
+///
+/// A compressed one is stored as uint32[], the stored size of each part, then those parts, each a
+/// Zstandard frame of the next kPartBytes of the payload, the last one of what is left.
 struct TextureRecord {
     StringRef name;
     TextureFormat format;
@@ -298,8 +305,8 @@ struct TextureRecord {
     /// where it was too low, so that the texture stayed as it was. 0 where blocks were not tried.
     float psnr;
     std::uint64_t offset;    ///< bytes into the texels section, where the payload before it ends
-    std::uint64_t size;      ///< mip_chain_bytes(format, width, height)
-    std::uint64_t checksum;  ///< checksum() of the payload
+    std::uint64_t size;      ///< mip_chain_bytes(format, width, height); compressed, less
+    std::uint64_t checksum;  ///< checksum() of the payload as it is stored
 };
 
 enum SourceFlags : std::uint32_t {
@@ -318,6 +325,7 @@ struct SourceRecord {
     std::uint32_t reserved;    ///< 0
 };
 
+inline constexpr std::uint64_t kPartBytes = 128 << 10;
 inline constexpr std::uint64_t kMipAlignment = 16;
 inline constexpr float kExactPsnr = 100.0f;
 inline constexpr std::uint32_t kMaxTextureSize = 16'384;
@@ -389,6 +397,7 @@ constexpr std::uint32_t block_bytes(TextureFormat format) {
         case TextureFormat::bc4_unorm:
             return 8;
         case TextureFormat::bc5_unorm:
+        case TextureFormat::bc7_srgb:
             return 16;
     }
     return 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "cw2-bake/textures/block_encoders.h"
 #include "cw2-bake/textures/mip_chain.h"
@@ -14,14 +15,18 @@ using mesh_format::TextureFormat;
 constexpr float kLeastPsnr = 34.0f;
 constexpr float kLeastNormalPsnr = 38.0f;
 
-TextureFormat compressed(TextureFormat format) {
+/// What a texture of `format` may become, the smallest first.
+std::span<const TextureFormat> block_formats(TextureFormat format) {
+    static constexpr TextureFormat kScalars[] = {TextureFormat::bc4_unorm};
+    static constexpr TextureFormat kNormals[] = {TextureFormat::bc5_unorm};
+    static constexpr TextureFormat kColors[] = {TextureFormat::bc1_srgb, TextureFormat::bc7_srgb};
     switch (format) {
         case TextureFormat::r8_unorm:
-            return TextureFormat::bc4_unorm;
+            return kScalars;
         case TextureFormat::rg8_unorm:
-            return TextureFormat::bc5_unorm;
+            return kNormals;
         default:
-            return TextureFormat::bc1_srgb;
+            return kColors;
     }
 }
 
@@ -33,6 +38,7 @@ double compress_level(TextureFormat to, const PlainLevel& level, std::uint32_t l
     double error = 0.0;
     for (std::uint32_t top = 0; top < level.height; top += 4, out += row_bytes) {
         error += to == TextureFormat::bc1_srgb    ? encode_bc1_row(level, top, out)
+                 : to == TextureFormat::bc7_srgb  ? encode_bc7_row(level, top, out)
                  : to == TextureFormat::bc4_unorm ? encode_bc4_row(level, top, limit, out)
                                                   : encode_bc5_row(level, top, out);
     }
@@ -47,12 +53,8 @@ float psnr_of(const Texture& texture, TextureFormat format, double error) {
                                          0.0, double{mesh_format::kExactPsnr}));
 }
 
-}  // namespace
-
-void compress_to_blocks(Texture& texture, std::optional<float> cutoff) {
-    if (texture.width == 1 && texture.height == 1) return;
-    const TextureFormat to = compressed(texture.format);
-    const std::uint32_t limit = cutoff ? cutoff_byte(*cutoff) : 0;
+/// Whether the texture is in blocks of this format now; they may be too far off.
+bool compress(Texture& texture, TextureFormat to, std::uint32_t limit) {
     std::vector<std::byte> blocks(mesh_format::mip_chain_bytes(to, texture.width, texture.height));
     const std::byte* level = texture.payload.data();
     std::byte* out = blocks.data();
@@ -64,10 +66,22 @@ void compress_to_blocks(Texture& texture, std::optional<float> cutoff) {
         out += mesh_format::mip_bytes(to, texture.width, texture.height, i);
         if (i > 0) continue;
         texture.psnr = psnr_of(texture, to, error);
-        if (texture.psnr < (to == TextureFormat::bc5_unorm ? kLeastNormalPsnr : kLeastPsnr)) return;
+        if (texture.psnr < (to == TextureFormat::bc5_unorm ? kLeastNormalPsnr : kLeastPsnr))
+            return false;
     }
     texture.format = to;
     texture.payload = std::move(blocks);
+    return true;
+}
+
+}  // namespace
+
+void compress_to_blocks(Texture& texture, std::optional<float> cutoff) {
+    if (texture.width == 1 && texture.height == 1) return;
+    const std::uint32_t limit = cutoff ? cutoff_byte(*cutoff) : 0;
+    for (const TextureFormat to : block_formats(texture.format)) {
+        if (compress(texture, to, limit)) return;
+    }
 }
 
 }  // namespace bake

@@ -21,6 +21,9 @@ struct PlainLevel {
 /// Four bytes a texel; the error is that of red, green and blue.
 double encode_bc1_row(const PlainLevel& level, std::uint32_t top, std::byte* out);
 
+/// The same, several times slower and nearer.
+double encode_bc7_row(const PlainLevel& level, std::uint32_t top, std::byte* out);
+
 /// One byte a texel; one at or above `limit` gets a value that is so, too, and one below it one
 /// below.
 double encode_bc4_row(const PlainLevel& level, std::uint32_t top, std::uint32_t limit,

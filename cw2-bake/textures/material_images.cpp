@@ -11,6 +11,7 @@
 #include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/textures/block_compression.h"
 #include "cw2-bake/textures/mip_chain.h"
+#include "cw2-bake/textures/payload_compression.h"
 #include "cw2-bake/textures/read_image.h"
 #include "cw2-bake/textures/relief.h"
 #include "cw2-bake/textures/roughness_mips.h"
@@ -319,11 +320,11 @@ const Image& ImageCache::get(const TextureMap& map) {
     return images_.emplace(map.file, std::move(image)).first->second;
 }
 
-ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCache& images) try {
+ImageResult make_textures(const ImageRequest& request, TextureForm form, ImageCache& images) try {
     ImageResult result;
     switch (request.kind) {
         case ImageRequest::Kind::surface:
-            make_surface(request, mode, images, result);
+            make_surface(request, form.mode, images, result);
             break;
         case ImageRequest::Kind::scalar:
             make_scalar(request, images, result);
@@ -336,9 +337,13 @@ ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCa
             make_normals(request, images, result);
             break;
     }
-    if (mode == TextureMode::bc) {
+    if (form.mode == TextureMode::bc) {
         if (result.texture) compress_to_blocks(*result.texture);
         if (result.alpha_mask) compress_to_blocks(*result.alpha_mask, request.alpha_cutoff);
+    }
+    if (form.compressed) {
+        if (result.texture) compress_payload(*result.texture);
+        if (result.alpha_mask) compress_payload(*result.alpha_mask);
     }
     return result;
 } catch (const std::bad_alloc&) {

@@ -73,10 +73,10 @@ class ImageCache {
     std::map<std::filesystem::path, Image> images_;
 };
 
-/// Reads, filters, and in mode bc compresses. A map whose image cannot be used counts as absent.
+/// Reads, filters, and stores as `form` says. A map whose image cannot be used counts as absent.
 /// What says nothing makes no texture: a mask that hides nothing, a normal map that is flat. An
 /// image of one value becomes 1 x 1. Throws BakeError where memory runs out.
-ImageResult make_textures(const ImageRequest& request, TextureMode mode, ImageCache& images);
+ImageResult make_textures(const ImageRequest& request, TextureForm form, ImageCache& images);
 
 /// What make_textures() calls the texture and the mask of a request whose images it can use.
 std::string texture_name(const ImageRequest& request);

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "cw2-bake/textures/payload_compression.h"
 #include "cw2-bake/textures/read_common_image.h"
 
 namespace bake {
@@ -67,12 +68,14 @@ Contents hash_images(std::span<const ImageRequest> requests) {
     return contents;
 }
 
-std::optional<SourceKey> source_key(const ImageRequest& request, TextureMode mode,
+std::optional<SourceKey> source_key(const ImageRequest& request, TextureForm form,
                                     const Contents& contents, std::string_view libraries) {
     KeyText text;
     text.add(std::string_view(CW2_TEXTURE_CODE));
     text.add(libraries);
-    text.add(mode);
+    text.add(form.mode);
+    text.add(form.compressed);
+    if (form.compressed) text.add(std::string_view(payload_compression_library()));
     text.add(settings_of(request));
     for (const auto* map : {&request.map, &request.alpha_map, &request.relief}) {
         if (!*map) continue;
@@ -88,12 +91,12 @@ std::optional<SourceKey> source_key(const ImageRequest& request, TextureMode mod
 }  // namespace
 
 std::vector<std::optional<SourceKey>> source_keys(std::span<const ImageRequest> requests,
-                                                  TextureMode mode) {
+                                                  TextureForm form) {
     const Contents contents = hash_images(requests);
     const std::string libraries = common_image_libraries();
     std::vector<std::optional<SourceKey>> keys;
     for (const ImageRequest& request : requests) {
-        keys.push_back(source_key(request, mode, contents, libraries));
+        keys.push_back(source_key(request, form, contents, libraries));
     }
     return keys;
 }

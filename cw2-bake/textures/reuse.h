@@ -20,10 +20,10 @@ namespace bake {
 using SourceKey = std::array<std::uint64_t, 2>;
 
 /// The key of each request: XXH3 (128 bits) of what its images hold and of everything else that
-/// its textures depend on, the code that makes them and `mode` included; not of names and places.
+/// its textures depend on, the code that makes them and `form` included; not of names and places.
 /// None where an image cannot be read.
 std::vector<std::optional<SourceKey>> source_keys(std::span<const ImageRequest> requests,
-                                                  TextureMode mode);
+                                                  TextureForm form);
 
 /// The file that an earlier bake left.
 class EarlierBake {

@@ -19,6 +19,16 @@ enum class TextureMode {
     none,      ///< materials keep their factors only
 };
 
+/// How textures are stored.
+struct TextureForm {
+    // A mode alone is a form.
+    TextureForm(TextureMode mode_, bool compressed_ = false)
+        : mode(mode_), compressed(compressed_) {}
+
+    TextureMode mode;
+    bool compressed;  ///< payloads in Zstandard frames
+};
+
 /// One finished texture; `payload` is as mesh_format::TextureRecord describes.
 struct Texture {
     std::string name;

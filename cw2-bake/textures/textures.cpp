@@ -68,7 +68,7 @@ void seal(std::optional<Texture>& texture) {
 }
 
 /// Makes what has no result yet.
-void make_rest(const std::vector<ImageRequest>& requests, TextureMode mode,
+void make_rest(const std::vector<ImageRequest>& requests, TextureForm form,
                const TextureProgress& progress, std::vector<std::optional<ImageResult>>& results) {
     const std::vector<Batch> batches = make_batches(requests, results);
     const double total = std::transform_reduce(batches.begin(), batches.end(), 0.0, std::plus<>(),
@@ -93,7 +93,7 @@ void make_rest(const std::vector<ImageRequest>& requests, TextureMode mode,
             ImageCache images;
             for (const std::size_t request : batch.requests) {
                 ImageResult& result =
-                    results[request].emplace(make_textures(requests[request], mode, images));
+                    results[request].emplace(make_textures(requests[request], form, images));
                 seal(result.texture);
                 seal(result.alpha_mask);
             }
@@ -180,17 +180,17 @@ void pass_on_warnings(const std::vector<ImageRequest>& requests,
 
 }  // namespace
 
-TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode mode,
+TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureForm form,
                          const std::filesystem::path& earlier, const Warn& warn,
                          const TextureProgress& progress) {
-    const TexturePlan plan = make_plan(materials, mode);
+    const TexturePlan plan = make_plan(materials, form.mode);
     if (plan.requests.empty())
         return {.textures = {}, .materials = std::vector<MaterialTextures>(materials.size())};
-    const std::vector<std::optional<SourceKey>> keys = source_keys(plan.requests, mode);
+    const std::vector<std::optional<SourceKey>> keys = source_keys(plan.requests, form);
     const EarlierBake earlier_bake(earlier);
     std::vector<std::optional<ImageResult>> results =
         find_earlier(earlier_bake, plan.requests, keys);
-    make_rest(plan.requests, mode, progress, results);
+    make_rest(plan.requests, form, progress, results);
     pass_on_warnings(plan.requests, results, warn);
 
     TextureSet set;

@@ -16,11 +16,11 @@ namespace bake {
 /// from one thread at a time.
 using TextureProgress = std::function<void(double done, std::string_view name)>;
 
-/// Reads and filters every image the materials name, and compresses it if `mode` says so, on as
-/// many threads as TBB is allowed; the result does not depend on their number. An image that is
-/// missing or cannot be read is a warning that names it, and the material goes on without it.
-/// What an earlier bake left at `earlier` is used again where it is what would be made anew.
-TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureMode mode,
+/// Reads and filters every image the materials name, and stores it as `form` says, on as many
+/// threads as TBB is allowed; the result does not depend on their number. An image that is missing
+/// or cannot be read is a warning that names it, and the material goes on without it. What an
+/// earlier bake left at `earlier` is used again where it is what would be made anew.
+TextureSet bake_textures(std::span<const SourceMaterial> materials, TextureForm form,
                          const std::filesystem::path& earlier, const Warn& warn,
                          const TextureProgress& progress);
 

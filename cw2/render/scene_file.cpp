@@ -16,6 +16,7 @@ namespace {
 
 void read(SceneFile& file, std::span<const std::byte> bytes, const std::string& name) {
     using mesh_format::Payloads;
+    file.name = name;
     file.document = mesh_format::parse(bytes, name, Payloads::unchecked);
     tbb::parallel_for(std::size_t{0}, file.document.textures.size(), [&](std::size_t i) {
         mesh_format::check_payload(file.document, i, name);

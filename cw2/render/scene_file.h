@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/io.h"
@@ -18,6 +19,7 @@ namespace cw2 {
 struct SceneFile {
     std::optional<common::MappedFile> mapped;
     std::vector<std::byte> bytes;  ///< of a file that is not mapped
+    std::string name;              ///< for messages
     mesh_format::Document document;
     mesh_format::DecodedGeometry decoded;
     std::vector<glm::vec3> positions;  ///< of all vertices, mesh after mesh

@@ -46,6 +46,8 @@ VkFormat vulkan_format(TextureFormat format, bool decoded) {
     switch (format) {
         case TextureFormat::bc1_srgb:
             return decoded ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_BC1_RGB_SRGB_BLOCK;
+        case TextureFormat::bc7_srgb:
+            return decoded ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_BC7_SRGB_BLOCK;
         case TextureFormat::bc4_unorm:
             return decoded ? VK_FORMAT_R8_UNORM : VK_FORMAT_BC4_UNORM_BLOCK;
         case TextureFormat::bc5_unorm:
@@ -227,26 +229,43 @@ void SceneTextures::make_images(const Device& device, const Document& document) 
     if (!images[true].empty()) begin_writing(device, images[true]);
 }
 
+/// What an image is made of; one that is not merged of the first alone.
+MergedTextures SceneTextures::read(const SceneFile& file, const Texture& texture) const {
+    const auto read_map = [&](std::uint32_t map) {
+        if (map == kNoTexture) return StoredTexture{};
+        const TextureRecord& record = file.document.textures[map];
+        // Of one texel there is no other level.
+        const std::uint32_t level = std::min(texture.first_level, record.mip_count - 1);
+        return StoredTexture{&record, mesh_format::decode_payload(
+                                          file.document, map, file.name, level,
+                                          [](std::size_t count, const auto& decode_part) {
+                                              tbb::parallel_for(std::size_t{0}, count, decode_part);
+                                          })};
+    };
+    const MergedMaps maps = maps_of(texture);
+    return {read_map(maps.normal), read_map(maps.roughness), read_map(maps.metalness)};
+}
+
 /// Rows of the stored level.
-void SceneTextures::write_rows(const Document& document, const Texture& texture,
+void SceneTextures::write_rows(const MergedTextures& source, const Texture& texture,
                                const Rows& rows) const {
     if (texture.merged) {
-        merge_rows(document, *texture.merged, rows);
+        merge_rows(source, rows);
     } else if (texture.stored == kNoTexture) {
         std::memset(rows.out, 255, mesh_format::block_bytes(texture.record.format));
     } else if (is_decoded(texture)) {
-        decode_rows(document, texture.stored, rows);
+        decode_rows(source.normal, rows);
     } else {
-        copy_rows(document, texture.stored, rows);
+        copy_rows(source.normal, rows);
     }
 }
 
 /// Rows of a level of the image, on threads.
-void SceneTextures::write_level(const Document& document, const Texture& texture,
+void SceneTextures::write_level(const MergedTextures& source, const Texture& texture,
                                 const Rows& rows) const {
     if (texture.is_one_texel) {
         std::array<std::byte, 16> texel;
-        write_rows(document, texture, {0, 0, 1, texel.data(), texel.size()});
+        write_rows(source, texture, {0, 0, 1, texel.data(), texel.size()});
         const std::size_t bytes = texel_block(texture).bytes;
         const std::uint32_t width = mesh_format::mip_extent(texture.record.width, rows.level);
         for (std::uint32_t y = 0; y < rows.count; ++y) {
@@ -263,7 +282,7 @@ void SceneTextures::write_level(const Document& document, const Texture& texture
             const auto first = static_cast<std::uint32_t>(4 * range.begin());
             const auto end = static_cast<std::uint32_t>(4 * range.end());
             write_rows(
-                document, texture,
+                source, texture,
                 {rows.level + texture.first_level, rows.first + first,
                  std::min(end, rows.count) - first, rows.out + first * rows.pitch, rows.pitch});
         });
@@ -277,20 +296,23 @@ TexelBlock SceneTextures::texel_block(const Texture& texture) const {
                : TexelBlock{mesh_format::block_extent(format), mesh_format::block_bytes(format)};
 }
 
-/// What it was made of.
+/// What it is made of; where it is not merged the first alone.
+MergedMaps SceneTextures::maps_of(const Texture& texture) {
+    return texture.merged.value_or(MergedMaps{texture.stored, kNoTexture, kNoTexture});
+}
+
 void SceneTextures::forget(const SceneFile& file, const Texture& texture) {
-    const MergedMaps maps =
-        texture.merged.value_or(MergedMaps{texture.stored, kNoTexture, kNoTexture});
+    const MergedMaps maps = maps_of(texture);
     for (const std::uint32_t map : {maps.normal, maps.roughness, maps.metalness}) {
         if (map != kNoTexture) file.forget(file.document.textures[map]);
     }
 }
 
 void SceneTextures::write(const Device& device, const SceneFile& file) const {
-    const Document& document = file.document;
     std::optional<Uploader> uploader;
     for (const Texture& texture : textures_) {
         if (!texture.image) continue;
+        const MergedTextures source = read(file, texture);
         const TextureRecord& record = texture.record;
         const TexelBlock block = texel_block(texture);
         const auto row_count = [&](std::uint32_t level) {
@@ -301,7 +323,7 @@ void SceneTextures::write(const Device& device, const SceneFile& file) const {
             for (std::uint32_t level = 0; level < record.mip_count; ++level) {
                 const LevelPlace place = level_place(device, texture.image.get(), level);
                 write_level(
-                    document, texture,
+                    source, texture,
                     {level, 0, row_count(level), texture.address + place.offset, place.pitch});
             }
             forget(file, texture);
@@ -314,7 +336,7 @@ void SceneTextures::write(const Device& device, const SceneFile& file) const {
                 const std::uint32_t width = mesh_format::mip_extent(record.width, level);
                 const std::size_t pitch =
                     std::size_t{(width + block.extent - 1) / block.extent} * block.bytes;
-                write_level(document, texture, {level, first, count, out, pitch});
+                write_level(source, texture, {level, first, count, out, pitch});
             });
         forget(file, texture);
     }

@@ -66,11 +66,11 @@ class SceneTextures {
     bool is_decoded(const Texture& texture) const;
     TexelBlock texel_block(const Texture& texture) const;
     void make_images(const Device& device, const mesh_format::Document& document);
+    static MergedMaps maps_of(const Texture& texture);
     static void forget(const SceneFile& file, const Texture& texture);
-    void write_level(const mesh_format::Document& document, const Texture& texture,
-                     const Rows& rows) const;
-    void write_rows(const mesh_format::Document& document, const Texture& texture,
-                    const Rows& rows) const;
+    MergedTextures read(const SceneFile& file, const Texture& texture) const;
+    void write_level(const MergedTextures& source, const Texture& texture, const Rows& rows) const;
+    void write_rows(const MergedTextures& source, const Texture& texture, const Rows& rows) const;
 
     TextureSettings settings_;
     std::vector<Memory> memory_;

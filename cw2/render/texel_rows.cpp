@@ -18,19 +18,19 @@ using mesh_format::TextureRecord;
 
 constexpr std::uint32_t kBlock = 4;
 
-/// Of a level of a texture, where `row` of its rows of blocks begins.
-const std::byte* stored_row(const mesh_format::Document& document, const TextureRecord& record,
-                            std::uint32_t level, std::uint32_t row, std::size_t row_bytes) {
-    std::uint64_t offset = record.offset;
-    for (std::uint32_t i = 0; i < level; ++i)
-        offset += mesh_format::mip_bytes(record.format, record.width, record.height, i);
-    return document.texels.data() + offset + row * row_bytes;
-}
-
 std::size_t row_bytes(const TextureRecord& record, std::uint32_t level) {
     const std::uint32_t width = mesh_format::mip_extent(record.width, level);
     return std::size_t{mesh_format::block_count(record.format, width)} *
            mesh_format::block_bytes(record.format);
+}
+
+/// Of a level of a texture, where `row` of its rows of blocks begins.
+const std::byte* stored_row(const StoredTexture& texture, std::uint32_t level, std::uint32_t row) {
+    const TextureRecord& record = *texture.record;
+    std::uint64_t offset = 0;
+    for (std::uint32_t i = 0; i < level; ++i)
+        offset += mesh_format::mip_bytes(record.format, record.width, record.height, i);
+    return texture.payload.bytes.data() + offset + row * row_bytes(record, level);
 }
 
 bool in_blocks(const TextureRecord& record) {
@@ -44,11 +44,10 @@ bool is_one_texel(const TextureRecord& record) {
 /// One channel or two of a map, four rows at a time; a map of one texel has it everywhere.
 class MapRows {
  public:
-    MapRows(const mesh_format::Document& document, std::uint32_t texture, std::uint32_t level,
-            std::uint32_t width)
-        : document_(document), texture_(texture), level_(level) {
-        if (texture == kNoTexture) return;
-        const TextureRecord& record = document.textures[texture];
+    MapRows(const StoredTexture& texture, std::uint32_t level, std::uint32_t width)
+        : texture_(texture), level_(level), is_read_(!texture.record) {
+        if (is_read_) return;
+        const TextureRecord& record = *texture.record;
         const std::size_t texel = in_blocks(record)
                                       ? mesh_format::decoded_texel_bytes(record.format)
                                       : mesh_format::block_bytes(record.format);
@@ -58,10 +57,10 @@ class MapRows {
         level_ = 0;
         read_rows(0, 1);
         for (std::size_t i = texel; i < texels_.size(); ++i) texels_[i] = texels_[i - texel];
-        texture_ = kNoTexture;  // all is read
+        is_read_ = true;
     }
     void read(std::uint32_t first, std::uint32_t count) {
-        if (texture_ != kNoTexture) read_rows(first, count);
+        if (!is_read_) read_rows(first, count);
     }
     /// Null where there is no such map.
     const std::byte* row(std::uint32_t y) const {
@@ -71,32 +70,30 @@ class MapRows {
  private:
     void read_rows(std::uint32_t first, std::uint32_t count) {
         const Rows rows{level_, first, count, texels_.data(), pitch_};
-        in_blocks(document_.textures[texture_]) ? decode_rows(document_, texture_, rows)
-                                                : copy_rows(document_, texture_, rows);
+        in_blocks(*texture_.record) ? decode_rows(texture_, rows) : copy_rows(texture_, rows);
     }
 
-    const mesh_format::Document& document_;
-    std::uint32_t texture_;
+    const StoredTexture& texture_;
     std::uint32_t level_;
+    bool is_read_;  ///< all of it
     std::size_t pitch_ = 0;
     std::vector<std::byte> texels_;
 };
 
 }  // namespace
 
-void copy_rows(const mesh_format::Document& document, std::uint32_t texture, const Rows& rows) {
-    const TextureRecord& record = document.textures[texture];
-    const std::size_t bytes = row_bytes(record, rows.level);
-    const std::byte* from = stored_row(document, record, rows.level, rows.first, bytes);
+void copy_rows(const StoredTexture& texture, const Rows& rows) {
+    const std::size_t bytes = row_bytes(*texture.record, rows.level);
+    const std::byte* from = stored_row(texture, rows.level, rows.first);
     for (std::uint32_t y = 0; y < rows.count; ++y)
         std::memcpy(rows.out + y * rows.pitch, from + y * bytes, bytes);
 }
 
-void decode_rows(const mesh_format::Document& document, std::uint32_t texture, const Rows& rows) {
-    const TextureRecord& record = document.textures[texture];
+void decode_rows(const StoredTexture& texture, const Rows& rows) {
+    const TextureRecord& record = *texture.record;
     const std::size_t bytes = row_bytes(record, rows.level);
     const std::uint32_t width = mesh_format::mip_extent(record.width, rows.level);
-    const std::byte* blocks = stored_row(document, record, rows.level, rows.first / kBlock, bytes);
+    const std::byte* blocks = stored_row(texture, rows.level, rows.first / kBlock);
     for (std::uint32_t y = 0; y < rows.count; y += kBlock, blocks += bytes)
         mesh_format::decode_block_row(record.format, blocks, width,
                                       std::min(rows.count - y, kBlock), rows.out + y * rows.pitch,
@@ -112,7 +109,7 @@ std::optional<MergedMaps> merged_maps(const mesh_format::Document& document,
         if (map == kNoTexture || is_one_texel(document.textures[map])) continue;
         const TextureRecord& record = document.textures[map];
         if (record.width != whole.width || record.height != whole.height ||
-            record.flags != whole.flags)
+            ((record.flags ^ whole.flags) & ~mesh_format::kCompressed) != 0)
             return std::nullopt;
     }
     return maps;
@@ -126,12 +123,13 @@ TextureRecord record_of(const mesh_format::Document& document, const MergedMaps&
     return whole;
 }
 
-void merge_rows(const mesh_format::Document& document, const MergedMaps& maps, const Rows& rows) {
-    const std::uint32_t width =
-        mesh_format::mip_extent(record_of(document, maps).width, rows.level);
-    const auto map_rows = [&](std::uint32_t map) {
-        return MapRows(document, map, rows.level, width);
-    };
+void merge_rows(const MergedTextures& maps, const Rows& rows) {
+    std::uint32_t width = 1;
+    for (const StoredTexture* map : {&maps.normal, &maps.roughness, &maps.metalness}) {
+        if (map->record)
+            width = std::max(width, mesh_format::mip_extent(map->record->width, rows.level));
+    }
+    const auto map_rows = [&](const StoredTexture& map) { return MapRows(map, rows.level, width); };
     MapRows normal = map_rows(maps.normal);
     std::array<MapRows, 2> scalars{map_rows(maps.roughness), map_rows(maps.metalness)};
     for (std::uint32_t y = 0; y < rows.count; y += kBlock) {

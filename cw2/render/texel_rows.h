@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "mesh-format/decode.h"
 #include "mesh-format/file.h"
 
 namespace cw2 {
@@ -19,12 +20,18 @@ struct Rows {
     std::size_t pitch;  ///< bytes from a row to the next
 };
 
+/// A texture of a file.
+struct StoredTexture {
+    const mesh_format::TextureRecord* record = nullptr;  ///< null for none
+    mesh_format::Payload payload{};                      ///< of the levels that are needed
+};
+
 /// As they are stored.
-void copy_rows(const mesh_format::Document& document, std::uint32_t texture, const Rows& rows);
+void copy_rows(const StoredTexture& texture, const Rows& rows);
 
 /// Texels as mesh_format::decode_block_row() leaves them. The first row is a multiple of 4, and so
 /// is the count unless the level ends with them.
-void decode_rows(const mesh_format::Document& document, std::uint32_t texture, const Rows& rows);
+void decode_rows(const StoredTexture& texture, const Rows& rows);
 
 /// Maps that a fragment reads one by one, in one image: for devices on which every read counts.
 /// Textures of a material whose texels lie at the same places: indices into the document's, or
@@ -36,6 +43,13 @@ struct MergedMaps {
     auto operator<=>(const MergedMaps&) const = default;
 };
 
+/// The textures that these are; one that is absent has no record.
+struct MergedTextures {
+    StoredTexture normal;
+    StoredTexture roughness;
+    StoredTexture metalness;
+};
+
 /// Nothing where maps of more than a texel differ in size or in what happens at their borders.
 std::optional<MergedMaps> merged_maps(const mesh_format::Document& document,
                                       const mesh_format::MaterialRecord& material);
@@ -45,6 +59,6 @@ mesh_format::TextureRecord record_of(const mesh_format::Document& document, cons
 
 /// Rows as of decode_rows(), 8 bits a channel: x and y of the normal, roughness, metalness; 255 for
 /// what is absent.
-void merge_rows(const mesh_format::Document& document, const MergedMaps& maps, const Rows& rows);
+void merge_rows(const MergedTextures& maps, const Rows& rows);
 
 }  // namespace cw2

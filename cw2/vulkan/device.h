@@ -94,7 +94,7 @@ class Device {
     }
     std::uint32_t queue_family() const { return queue_family_; }
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
-    /// Whether images may be in the formats BC1 to BC5.
+    /// Whether images may be in the formats BC1 to BC7.
     bool samples_blocks() const { return samples_blocks_; }
     /// Whether queries may ask for pipeline statistics.
     bool counts_fragments() const { return counts_fragments_; }

@@ -89,9 +89,12 @@ void read_mesh(std::span<const std::byte> bytes) {
         bake::inspection(document, bytes.size());
         bake::inspection_json(document, bytes.size());
         const mesh_format::DecodedGeometry decoded = mesh_format::decode(document, "the file");
+        std::vector<mesh_format::Payload> decoded_payloads;
         std::vector<std::span<const std::byte>> payloads;
-        for (const mesh_format::TextureRecord& texture : document.textures)
-            payloads.push_back(document.payload(texture));
+        for (std::size_t i = 0; i < document.textures.size(); ++i) {
+            decoded_payloads.push_back(mesh_format::decode_payload(document, i, "the file"));
+            payloads.push_back(decoded_payloads.back().bytes);
+        }
         bake::write_gltf(document, payloads, folder() / "out.glb", kIgnore);
     } catch (const std::runtime_error&) {
         return;

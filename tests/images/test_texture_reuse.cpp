@@ -1,6 +1,7 @@
 // A bake over an earlier one: it takes over exactly what it would make again.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -11,6 +12,7 @@
 #include "cw2-bake/textures/reuse.h"
 #include "cw2-bake/textures/textures.h"
 #include "image_files.h"
+#include "mesh-format/decode.h"
 #include "mesh-format/file.h"
 
 namespace {
@@ -20,6 +22,7 @@ using mesh_format::MapUse;
 namespace fs = std::filesystem;
 using bake::Channel;
 using bake::ImageRequest;
+using bake::TextureForm;
 using bake::TextureMode;
 using Bytes = std::vector<std::byte>;
 using Names = std::multiset<std::string>;
@@ -74,20 +77,21 @@ class Reuse : public testing::Test {
         });
     }
 
-    Bytes bake(const std::string& output, TextureMode mode = TextureMode::bc) {
+    Bytes bake(const std::string& output, TextureForm form = TextureMode::bc) {
         bake::bake({.input = folder_ / "scene.obj",
                     .output = folder_ / output,
-                    .textures = mode,
+                    .textures = form.mode,
+                    .compress = form.compressed,
                     .quiet = true},
                    [&](const std::string& line) { warnings_.push_back(line); });
         return bytes_of(folder_ / output);
     }
 
     /// The names of the textures that a bake over scene.cw2mesh would make anew.
-    Names made_anew(TextureMode mode = TextureMode::bc) {
+    Names made_anew(TextureForm form = TextureMode::bc) {
         const auto scene = bake::read_obj(folder_ / "scene.obj", [](const std::string&) {});
         const bake::TextureSet set = bake::bake_textures(
-            scene.materials, mode, folder_ / "scene.cw2mesh", [](const std::string&) {}, {});
+            scene.materials, form, folder_ / "scene.cw2mesh", [](const std::string&) {}, {});
         Names names;
         for (const bake::Texture& texture : set.textures) {
             if (texture.earlier_payload.empty()) names.insert(texture.name);
@@ -96,9 +100,9 @@ class Reuse : public testing::Test {
     }
 
     /// A bake over scene.cw2mesh makes `names` anew, and gives what a fresh bake gives.
-    void expect_made_anew(const Names& names, TextureMode mode = TextureMode::bc) {
-        EXPECT_EQ(made_anew(mode), names);
-        EXPECT_TRUE(bake("scene.cw2mesh", mode) == bake("fresh.cw2mesh", mode));
+    void expect_made_anew(const Names& names, TextureForm form = TextureMode::bc) {
+        EXPECT_EQ(made_anew(form), names);
+        EXPECT_TRUE(bake("scene.cw2mesh", form) == bake("fresh.cw2mesh", form));
         fs::remove(folder_ / "fresh.cw2mesh");
     }
 
@@ -120,6 +124,9 @@ class Reuse : public testing::Test {
     std::vector<std::string> warnings_;
 };
 
+const TextureForm kForms[] = {
+    TextureMode::bc, TextureMode::lossless, {TextureMode::bc, true}, {TextureMode::lossless, true}};
+
 const Names kAllLossless{"wall.png", "wall.png", "bumps.png", "rough.png",  "leaf.png",
                          "leaf.png", "leaf.png", "mask.png",  "heights.png"};
 const Names kAll{"wall.png", "wall.png", "bumps.png", "rough.png",   "leaf.png",
@@ -130,9 +137,9 @@ TEST_F(Reuse, WithoutAnEarlierFileEverythingIsMade) {
 }
 
 TEST_F(Reuse, ASecondBakeMakesNothingAnewAndGivesTheSameBytes) {
-    for (const TextureMode mode : {TextureMode::bc, TextureMode::lossless}) {
-        const Bytes first = bake("scene.cw2mesh", mode);
-        expect_made_anew({}, mode);
+    for (const TextureForm form : kForms) {
+        const Bytes first = bake("scene.cw2mesh", form);
+        expect_made_anew({}, form);
         EXPECT_TRUE(bytes_of(folder_ / "scene.cw2mesh") == first);
     }
     EXPECT_EQ(warnings_, std::vector<std::string>());
@@ -154,10 +161,26 @@ TEST_F(Reuse, OnlyWhatDependsOnAChangedImageIsMadeAnew) {
     expect_made_anew({"flat.png"});
 }
 
-TEST_F(Reuse, AnotherModeMakesEverythingAnew) {
+TEST_F(Reuse, AnotherFormMakesEverythingAnew) {
     bake("scene.cw2mesh");
     expect_made_anew(kAllLossless, TextureMode::lossless);
+    expect_made_anew(kAll, {TextureMode::bc, true});
     expect_made_anew(kAll, TextureMode::bc);
+}
+
+TEST_F(Reuse, CompressedTexturesAreSmallerAndDecodeToThePlainOnes) {
+    for (const TextureMode mode : {TextureMode::bc, TextureMode::lossless}) {
+        const Bytes plain_bytes = bake("scene.cw2mesh", mode);
+        const Bytes bytes = bake("compressed.cw2mesh", {mode, true});
+        const auto plain = mesh_format::parse(plain_bytes, "plain");
+        const auto document = mesh_format::parse(bytes, "compressed");
+        EXPECT_LT(document.texels.size(), plain.texels.size());
+        ASSERT_EQ(document.textures.size(), plain.textures.size());
+        for (std::size_t i = 0; i < plain.textures.size(); ++i) {
+            const auto payload = mesh_format::decode_payload(document, i, "compressed");
+            EXPECT_TRUE(std::ranges::equal(payload.bytes, plain.payload(plain.textures[i])));
+        }
+    }
 }
 
 TEST_F(Reuse, WhatAMaterialStatesCounts) {
@@ -283,10 +306,10 @@ TEST(SourceKeys, TellEverythingApartThatATextureDependsOn) {
         {.kind = ImageRequest::Kind::surface, .map = a, .factor = 0.5f},
     };
     std::set<bake::SourceKey> keys;
-    for (const TextureMode mode : {TextureMode::bc, TextureMode::lossless}) {
-        for (const auto& key : bake::source_keys(requests, mode)) keys.insert(key.value());
+    for (const TextureForm form : kForms) {
+        for (const auto& key : bake::source_keys(requests, form)) keys.insert(key.value());
     }
-    EXPECT_EQ(keys.size(), 2 * std::size(requests));
+    EXPECT_EQ(keys.size(), std::size(kForms) * std::size(requests));
 
     const ImageRequest elsewhere[] = {{.kind = ImageRequest::Kind::surface,
                                        .map = map_of(folder / "like_a.png", "b.mtl:7"),

@@ -55,11 +55,14 @@ def write_scene(folder):
     (folder / "scene.obj").write_text("\n".join(lines))
     (folder / "scene.mtl").write_text(
         "newmtl ball\nmap_Kd color.png\nmap_Pr rough.png\nnorm normal.png\n"
-        "newmtl leaf\nKd 0.5 0.6 0.7\nmap_d mask.png\nnewmtl sheet\n")
+        "newmtl leaf\nKd 0.5 0.6 0.7\nmap_d mask.png\nmap_Ke glow.png\nnewmtl sheet\n")
     draw = check_documents.write_png
     draw(folder / "color.png", 22, lambda x, y: (100 + 2 * x, 80 + 3 * x, 60 + x))
     draw(folder / "rough.png", 13, lambda x, y: (19 * x,) * 3)
     draw(folder / "normal.png", 20, lambda x, y: (118 + x, 138 - y, 254))
+    # Of two lines through the colours a block; of two parts once it is compressed.
+    draw(folder / "glow.png", 190, lambda x, y: (40 + 30 * (x % 4), 60, 80) if y % 4 < 2 else
+         (80, 200, 40 + 30 * (x % 4)))
     draw(folder / "mask.png", 9, lambda x, y: (255 * (x > y),) * 3)
 
 
@@ -176,12 +179,13 @@ class Reader(unittest.TestCase):
 
     def test_textures(self):
         formats = set()
-        for kind in ("bc", "lossless"):
-            scene = self.compare("--textures", kind)
+        for kind, compress in itertools.product(("bc", "lossless"), ([], ["--compress"])):
+            scene = self.compare("--textures", kind, *compress)
+            self.assertEqual(any(texture.flags & 4 for texture in scene.textures), bool(compress))
             formats |= {read_cw2mesh.FORMATS[texture.format][0] for texture in scene.textures}
             names = {scene.textures[index].name for material in scene.materials
                      for index in material.textures.values() if index is not None}
-            self.assertEqual(names, {"color.png", "rough.png", "normal.png", "mask.png"})
+            self.assertEqual(names, {"color.png", "rough.png", "normal.png", "mask.png", "glow.png"})
         self.assertEqual(formats, {form[0] for form in read_cw2mesh.FORMATS})
 
     def test_bytes_that_no_bake_writes(self):

@@ -39,11 +39,13 @@ void print_mesh(const Document& document, const MeshRecord& mesh) {
         print(document.indices[mesh.first_index + i]);
 }
 
-void print_texture(const Document& document, const TextureRecord& texture) {
-    const std::byte* level = document.payload(texture).data();
-    for (std::uint32_t i = 0; i < texture.mip_count; ++i) {
-        const std::uint32_t width = mip_extent(texture.width, i);
-        const std::uint32_t height = mip_extent(texture.height, i);
+void print_texture(const Document& document, std::size_t i) {
+    const TextureRecord& texture = document.textures[i];
+    const Payload payload = decode_payload(document, i, "the file");
+    const std::byte* level = payload.bytes.data();
+    for (std::uint32_t k = 0; k < texture.mip_count; ++k) {
+        const std::uint32_t width = mip_extent(texture.width, k);
+        const std::uint32_t height = mip_extent(texture.height, k);
         if (block_extent(texture.format) == 1) {
             std::fwrite(level, block_bytes(texture.format), std::size_t{width} * height, stdout);
         } else {
@@ -56,7 +58,7 @@ void print_texture(const Document& document, const TextureRecord& texture) {
                 std::fwrite(texels.data(), rows * texels.size() / 4, 1, stdout);
             }
         }
-        level += mip_bytes(texture.format, texture.width, texture.height, i);
+        level += mip_bytes(texture.format, texture.width, texture.height, k);
     }
 }
 
@@ -69,7 +71,7 @@ int main(int, char** argv) {
         Document document = parse(std::as_bytes(std::span(bytes)), argv[1]);
         const DecodedGeometry decoded = decode(document, argv[1]);
         for (const MeshRecord& mesh : document.meshes) print_mesh(document, mesh);
-        for (const TextureRecord& texture : document.textures) print_texture(document, texture);
+        for (std::size_t i = 0; i < document.textures.size(); ++i) print_texture(document, i);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 1;

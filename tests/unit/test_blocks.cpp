@@ -10,6 +10,7 @@
 #include <random>
 
 #include "cw2-bake/textures/block_compression.h"
+#include "mesh-format/bc7.h"
 #include "mesh-format/blocks.h"
 
 namespace {
@@ -305,6 +306,62 @@ TEST(Blocks, NormalsKeepTheirDirectionWithZRebuilt) {
     EXPECT_NEAR(texture.psnr, 10.0 * std::log10(4.0 * 3.0 / mean), 0.01)
         << "of 0.5 n + 0.5, so that a chord c is a mean square of c^2 / 12";
     EXPECT_LT(std::sqrt(mean) * 180.0 / std::numbers::pi, 1.0) << "degrees";
+}
+
+/// Numbers of so many bits each, from the lowest bit.
+Bytes block_of(std::initializer_list<std::pair<std::uint32_t, int>> numbers) {
+    Bytes block(16);
+    std::size_t at = 0;
+    for (const auto& [number, bits] : numbers) {
+        for (int i = 0; i < bits; ++i, ++at) {
+            if (number >> i & 1) block[at / 8] |= std::byte{1} << at % 8;
+        }
+    }
+    EXPECT_EQ(at, 128u);
+    return block;
+}
+
+TEST(Blocks, TwoLinesOfEightColours) {
+    // The upper half between (255, 2, 2) and (2, 255, 2), the lower between 0 and 129.
+    const Bytes block =
+        block_of({{2, 2}, {13, 6}, {63, 6}, {0, 6}, {0, 6}, {32, 6}, {0, 6}, {63, 6},
+                  {0, 6}, {32, 6}, {0, 6},  {0, 6}, {0, 6}, {32, 6}, {1, 1}, {0, 1},
+                  {0, 2}, {7, 3},  {3, 3},  {0, 3}, {0, 3}, {0, 3},  {0, 3}, {0, 3},
+                  {0, 3}, {7, 3},  {4, 3},  {0, 3}, {0, 3}, {0, 3},  {0, 3}, {3, 2}});
+    const std::vector<int> texels = decode(TextureFormat::bc7_srgb, block);
+    EXPECT_EQ(first(texels, 12), (std::vector{255, 2, 2, 255, 2, 255, 2, 255, 148, 109, 2, 255}));
+    EXPECT_EQ(std::vector(texels.begin() + 32, texels.begin() + 44),
+              (std::vector{0, 0, 0, 255, 129, 129, 129, 255, 75, 75, 75, 255}));
+    EXPECT_EQ(std::vector(texels.begin() + 60, texels.end()), (std::vector{54, 54, 54, 255}));
+}
+
+TEST(Blocks, OfModesAndPartitionsThatNobodyWritesAreBlack) {
+    for (const int first_byte : {64, 2 | 16 << 2}) {
+        Bytes block(16, std::byte{0xFF});
+        block[0] = static_cast<std::byte>(first_byte);
+        const std::vector<int> texels = decode(TextureFormat::bc7_srgb, block);
+        for (std::size_t i = 0; i < texels.size(); ++i) EXPECT_EQ(texels[i], i % 4 == 3 ? 255 : 0);
+    }
+}
+
+TEST(Blocks, ColoursThatOneLineMissesAreMetByTwo) {
+    std::mt19937 random(4);
+    // Odd sizes, and one of the partitions in each block.
+    const Texture plain =
+        make_texture(TextureFormat::rgba8_srgb, 61, 47, [&](int x, int y, std::size_t c) {
+            const std::size_t partition = static_cast<std::size_t>(x / 4 + 3 * (y / 4)) % 16;
+            const bool second = mesh_format::kBc7Subsets[partition] >> (4 * (y % 4) + x % 4) & 1;
+            const int along = static_cast<int>(random() % 2) + 25 * ((x + y) % 4);
+            return c == 3 ? 255 : second ? (c == 0 ? 60 + along : 40) : c == 2 ? 250 - along : 170;
+        });
+    Texture texture = plain;
+    bake::compress_to_blocks(texture);
+    ASSERT_EQ(texture.format, TextureFormat::bc7_srgb);
+    EXPECT_GT(texture.psnr, 40.0f);
+    std::vector<int> wanted = texels_of(plain);
+    const std::size_t count = std::size_t{61} * 47 * 4;
+    const double mean = mean_square(decode_all(texture), wanted, count) * 4 / 3;  // alpha is exact
+    EXPECT_NEAR(texture.psnr, 10.0 * std::log10(255.0 * 255.0 / mean), 0.01);
 }
 
 TEST(Blocks, ASingleTexelStaysExact) {

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 
 #include "cw2-bake/geometry/compress.h"
+#include "cw2-bake/textures/payload_compression.h"
 #include "mesh-format/decode.h"
 #include "small_scene.h"
 
@@ -83,6 +85,93 @@ TEST(CompressedFile, DamageIsSaidOrMakesOtherGeometry) {
 }
 
 /// A large flat mesh shrinks to less than a thousandth.
+/// A file's only texture, of several parts, and its payload.
+struct CompressedTexture {
+    CompressedTexture() {
+        bake::Texture texture{
+            .format = TextureFormat::r8_unorm, .width = 700, .height = 450, .payload = {}};
+        texture.payload.resize(mip_chain_bytes(texture.format, texture.width, texture.height));
+        for (std::size_t i = 0; i < texture.payload.size(); ++i)
+            texture.payload[i] = static_cast<std::byte>(i * i >> 9);
+        plain = texture.payload;
+        bake::compress_payload(texture);
+        stored = texture.payload;
+        record = {.format = texture.format,
+                  .flags = texture.flags,
+                  .width = texture.width,
+                  .height = texture.height,
+                  .mip_count = full_mip_count(texture.width, texture.height),
+                  .size = stored.size()};
+    }
+    Payload decoded(std::uint32_t first_level = 0) const {
+        const Document document{.textures = {&record, 1}, .texels = stored};
+        return decode_payload(document, 0, "the file", first_level);
+    }
+
+    TextureRecord record{};
+    std::vector<std::byte> plain;
+    std::vector<std::byte> stored;
+};
+
+TEST(CompressedFile, PayloadsDecodeFromAnyLevelOn) {
+    const CompressedTexture texture;
+    ASSERT_TRUE(texture.record.flags & kCompressed);
+    EXPECT_LT(texture.stored.size(), texture.plain.size());
+    std::size_t begin = 0;
+    for (std::uint32_t level = 0; level < texture.record.mip_count; ++level) {
+        const Payload payload = texture.decoded(level);
+        ASSERT_EQ(payload.bytes.size(), texture.plain.size());
+        EXPECT_TRUE(std::ranges::equal(payload.bytes.subspan(begin),
+                                       std::span(texture.plain).subspan(begin)));
+        begin += mip_bytes(texture.record.format, 700, 450, level);
+    }
+}
+
+TEST(CompressedFile, NoiseIsStoredAsItIs) {
+    std::mt19937 random(1);
+    bake::Texture texture{.format = TextureFormat::r8_unorm, .width = 64, .height = 64};
+    texture.payload.resize(mip_chain_bytes(texture.format, 64, 64));
+    for (std::byte& value : texture.payload) value = static_cast<std::byte>(random());
+    const std::vector<std::byte> plain = texture.payload;
+    bake::compress_payload(texture);
+    EXPECT_EQ(texture.flags, 0u);
+    EXPECT_EQ(texture.payload, plain);
+}
+
+TEST(CompressedFile, DamagedPayloadsAreRefusedOrDecodeToAsMuch) {
+    const CompressedTexture whole;
+    const auto ends = [&](const CompressedTexture& texture) {
+        try {
+            EXPECT_EQ(texture.decoded().bytes.size(), whole.plain.size());
+            return false;
+        } catch (const FormatError& error) {
+            EXPECT_EQ(std::string(error.what()),
+                      "the file: texture 0: its compressed texels are damaged");
+            return true;
+        }
+    };
+    // Sizes of parts, and the frames' first bytes.
+    std::size_t refused = 0;
+    for (std::size_t at = 0; at < 60; ++at) {
+        for (const unsigned bits : {0x01u, 0x80u, 0xFFu}) {
+            CompressedTexture texture = whole;
+            texture.stored[at] ^= std::byte(bits);
+            refused += ends(texture);
+        }
+    }
+    EXPECT_GT(refused, 50u);
+    for (std::size_t size = 0; size < whole.stored.size(); size += size < 40 ? 1 : 999) {
+        CompressedTexture texture = whole;
+        texture.stored.resize(size);
+        texture.record.size = size;
+        EXPECT_TRUE(ends(texture)) << size;
+    }
+    // A part as long as another, in its place.
+    CompressedTexture texture = whole;
+    texture.record.height = 451;
+    EXPECT_TRUE(ends(texture));
+}
+
 TEST(CompressedFile, NextToNothingIsPlausible) {
     constexpr std::uint32_t kChunks = 256;
     constexpr std::uint32_t kChunkIndices = 3 * kMaxChunkTriangles;
