@@ -192,7 +192,9 @@ std::optional<TexelSource> find_normals(const std::optional<TextureMap>& map, bo
     if (relief == Relief::normals_xy)
         warn(*map, "is a normal map of two channels: blue says nothing; z is made from x and y",
              result);
-    if (relief == Relief::normals || relief == Relief::normals_xy)
+    if (relief == Relief::vectors)
+        warn(*map, "holds vectors of other lengths than 1: they are normalised", result);
+    if (relief == Relief::normals || relief == Relief::normals_xy || relief == Relief::vectors)
         return normal_texels(*image, relief == Relief::normals_xy);
     if (relief == Relief::colors)
         warn(*map, "is coloured, and no normal map: its luminance is taken as height", result);

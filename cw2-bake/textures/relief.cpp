@@ -13,6 +13,8 @@ namespace {
 /// Counts of texels, as vectors of which 0.5 n + 0.5 is stored.
 struct Vectors {
     double count = 0;
+    double coloured = 0;    ///< not grey
+    double unit = 0;        ///< of these about of length 1
     double unit_up = 0;     ///< about of length 1, and z not below 0
     double in_disk = 0;     ///< x and y are those of a unit vector
     double not_up = 0;      ///< z is 0 at most
@@ -35,7 +37,11 @@ void count(const float* texel, Vectors& vectors) {
     const float z = 2.0f * texel[2] - 1.0f;
     const float disk = x * x + y * y;
     const float square = disk + z * z;
+    const float chroma = std::max({x, y, z}) - std::min({x, y, z});
+    const bool is_coloured = chroma > 4 * kByte;
     vectors.count += 1;
+    vectors.coloured += is_coloured;
+    vectors.unit += is_coloured && square > kShortest && square < kLongest;
     vectors.unit_up += square > kShortest && square < kLongest && z > -6 * kByte;
     vectors.off_unit += std::abs(square - 1.0f);
     vectors.in_disk += disk < 1.1f;
@@ -43,7 +49,7 @@ void count(const float* texel, Vectors& vectors) {
     vectors.least_blue += z < -1.0f + 4 * kByte;
     vectors.sum_x += x;
     vectors.sum_y += y;
-    vectors.sum_chroma += std::max({x, y, z}) - std::min({x, y, z});
+    vectors.sum_chroma += chroma;
     vectors.smallest_z = std::min(vectors.smallest_z, z);
     vectors.largest_z = std::max(vectors.largest_z, z);
 }
@@ -92,8 +98,8 @@ Relief relief_of_normals(const Image& image) {
     if (image.channels == 2 && !image.has_alpha) return Relief::normals_xy;
     if (is_grey(image)) return Relief::heights;
     const Vectors vectors = count_vectors(image);
-    return vectors.nearly_all(vectors.not_up) || lacks_z(vectors) ? Relief::normals_xy
-                                                                  : Relief::normals;
+    if (vectors.nearly_all(vectors.not_up) || lacks_z(vectors)) return Relief::normals_xy;
+    return 2 * vectors.unit < vectors.coloured ? Relief::vectors : Relief::normals;
 }
 
 }  // namespace bake

@@ -226,6 +226,34 @@ TEST(NormalMaps, OfTwoChannelsGetTheirZ) {
         expect_bumps(make_bump(folder / name), 0.02);
 }
 
+TEST(NormalMaps, OfOtherLengthsAreNamedAndNormalised) {
+    const TemporaryFolder folder;
+    for (const double length : {0.4, 0.6, 1.3}) {
+        SCOPED_TRACE(length);
+        write_image(folder / "n.png", kSize, kSize, 3, [&](int x, int y) {
+            Vector n = bumps(x, y);
+            for (double& component : n) component *= length;
+            return stored(n);
+        });
+        const Made made = make_normal(folder / "n.png");
+        expect_bumps(made, length > 1.0 ? 0.3 : 0.02);  // 8 bits hold no component above 1
+        ASSERT_EQ(made.warnings.size(), 1u);
+        EXPECT_EQ(made.warnings[0].find("a.mtl:7: " + (folder / "n.png").string()), 0u);
+        EXPECT_NE(made.warnings[0].find("normalised"), std::string::npos);
+    }
+}
+
+TEST(NormalMaps, WithGreyFillersOrAFewVectorsOfOtherLengthsAreNormals) {
+    const TemporaryFolder folder;
+    for (const double filler : {0.0, 0.5, 1.0}) {
+        write_image(folder / "n.png", kSize, kSize, 3, [&](int x, int y) {
+            if (x > 20) return std::vector(3, filler);
+            return x > 15 ? std::vector{0.5, 0.6, 0.6} : stored(bumps(x, y));
+        });
+        EXPECT_EQ(make_normal(folder / "n.png").warnings, std::vector<std::string>()) << filler;
+    }
+}
+
 TEST(NormalMaps, ThatPointIntoTheSurfaceHereAndThereAreTurnedOutOfIt) {
     const TemporaryFolder folder;
     write_image(folder / "n.png", kSize, kSize, 3, [](int x, int y) {
