@@ -141,9 +141,9 @@ def anchors_of(page):
 
 def check_links(root):
     failed = False
-    pages = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"],
-                           cwd=root, check=True, capture_output=True, text=True).stdout.split()
-    for page in (root / name for name in pages):
+    folders = [place for place in root.iterdir() if place.is_dir() and place.name not in ("build", ".git")]
+    pages = [*root.glob("*.md"), *(page for folder in folders for page in folder.rglob("*.md"))]
+    for page in sorted(pages):
         text = text_of(page)
         links = re.findall(r"\]\(([^()\s]+)\)", text) + re.findall(r"(?:src|href)=\"([^\"]+)\"", text)
         for link in links:
