@@ -14,7 +14,6 @@
 #include <thread>
 
 #include "common/file_kind.h"
-#include "common/progress.h"
 #include "cw2-bake/geometry/chunks.h"
 #include "cw2-bake/geometry/compress.h"
 #include "cw2-bake/geometry/normals.h"
@@ -28,6 +27,7 @@
 #include "cw2-bake/input_files.h"
 #include "cw2-bake/obj/read_obj.h"
 #include "cw2-bake/report.h"
+#include "cw2-bake/stage_progress.h"
 #include "cw2-bake/stats.h"
 #include "cw2-bake/textures/textures.h"
 #include "mesh-format/decode.h"
@@ -47,12 +47,13 @@ bool is_gltf(const std::filesystem::path& path) {
     return common::file_kind(path) == common::FileKind::gltf;
 }
 
-SourceScene read_scene(const Settings& settings, const Warn& warn) {
+SourceScene read_scene(const Settings& settings, const Warn& warn, const Advance& advance) {
     const std::filesystem::path& path = settings.input;
     // Empty: files may be anywhere.
     std::filesystem::path root;
     if (settings.restricted) root = path.has_parent_path() ? path.parent_path() : ".";
-    return is_gltf(path) ? read_gltf(path, warn, root) : read_obj(path, warn, kObjChunkBytes, root);
+    return is_gltf(path) ? read_gltf(path, warn, root)
+                         : read_obj(path, warn, kObjChunkBytes, root, advance);
 }
 
 /// Throws BakeError if the box of the packed scene is beyond what floats hold, or its radius so
@@ -91,18 +92,14 @@ void warn_of_no_area(const SourceScene& scene, const std::filesystem::path& path
     warn(path.string() + ": shows nothing: no triangle has an area");
 }
 
-TextureSet make_textures(const Settings& settings, const SourceScene& scene, const Warn& warn) {
+TextureSet make_textures(const Settings& settings, const SourceScene& scene, const Warn& warn,
+                         StageProgress& progress) {
     if (settings.textures == TextureMode::none) {
         return {.textures = {}, .materials = std::vector<MaterialTextures>(scene.materials.size())};
     }
-    common::ProgressBar bar(!settings.quiet);
-    const auto warn_without_bar = [&](const std::string& warning) {
-        bar.erase();
-        warn(warning);
-    };
     return bake_textures(scene.materials, {settings.textures, settings.compress}, settings.output,
-                         warn_without_bar,
-                         [&bar](double done, std::string_view name) { bar.update(done, name); });
+                         warn,
+                         [&](double done, std::string_view name) { progress.update(done, name); });
 }
 
 /// A line for the summary, unless nothing was.
@@ -235,11 +232,21 @@ std::uint64_t write_export(const mesh_format::Document& document,
 /// Returns the file's size in bytes.
 std::uint64_t write_baked(const mesh_format::Document& document,
                           std::span<const std::span<const std::byte>> payloads,
-                          const std::filesystem::path& path) {
+                          const std::filesystem::path& path, const Advance& advance) {
+    std::size_t most = document.vertices.size() + document.indices.size_bytes() +
+                       document.encoded_vertices.size() + document.encoded_indices.size();
+    for (const auto payload : payloads) most += payload.size();
     common::OutputFile file(path);
-    const std::uint64_t bytes =
-        mesh_format::write(document, payloads, path.string(),
-                           [&file](std::span<const std::byte> part) { file.write(part); });
+    const auto sink = [&](std::span<const std::byte> part) {
+        constexpr std::size_t kPiece = 16 << 20;
+        while (!part.empty()) {
+            const auto piece = part.first(std::min(part.size(), kPiece));
+            file.write(piece);
+            advance(static_cast<double>(piece.size()) / static_cast<double>(most));
+            part = part.subspan(piece.size());
+        }
+    };
+    const std::uint64_t bytes = mesh_format::write(document, payloads, path.string(), sink);
     file.commit();
     return bytes;
 }
@@ -255,43 +262,48 @@ void write_stats(const Settings& settings, const BakeStats& stats) {
 /// soon as none of the later ones asks for it. Within a stage, tasks run over blocks of vertices,
 /// or over halves of halves of a material's triangles, so that one large mesh fills all cores as
 /// well as many small ones.
-std::string run_stages(const Settings& settings, const Warn& warn, StageClock& clock) {
+std::string run_stages(const Settings& settings, const Warn& warn_of, StageClock& clock) {
     const std::size_t threads = settings.threads > 0 ? static_cast<std::size_t>(settings.threads)
                                                      : std::thread::hardware_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     std::max<std::size_t>(threads, 1));
 
     require_writable(settings);
-    clock.begin("read");
-    SourceScene scene = read_scene(settings, warn);
+    StageProgress progress(!settings.quiet, clock);
+    const Warn warn = [&](const std::string& warning) {
+        progress.erase();
+        warn_of(warning);
+    };
+    progress.begin("read");
+    SourceScene scene = read_scene(settings, warn, progress.advance());
     const std::vector<std::filesystem::path> inputs = input_files(scene, settings);
     refuse_overwriting(settings, inputs);
     const std::string rule = settings.depfile ? depfile_text(settings.output, inputs) : "";
     warn_of_no_area(scene, settings.input, warn);
-    clock.begin("textures");
-    const TextureSet textures = make_textures(settings, scene, warn);
+    progress.begin("textures");
+    const TextureSet textures = make_textures(settings, scene, warn, progress);
     if (is_gltf(settings.input)) warn_of_blending(scene.materials, textures.materials, warn);
     const std::vector<UvBudget> budgets = uv_budgets(textures);
-    clock.begin("normals");
+    progress.begin("normals");
     if (settings.z_up) turn_z_up(scene);
     std::optional<FirstEqual> positions(scene.positions);
-    generate_normals(scene, *positions);
-    clock.begin("weld");
-    FramedTriangles framed = weld(scene, *positions);
+    generate_normals(scene, *positions, progress.advance());
+    progress.begin("weld");
+    FramedTriangles framed = weld(scene, *positions, progress.advance());
     positions.reset();
-    clock.begin("tangents");
-    add_tangents(scene, framed);
-    clock.begin("chunks");
+    progress.begin("tangents");
+    add_tangents(scene, framed, progress.advance());
+    progress.begin("chunks");
     const FramedScene framed_scene{scene, framed};
-    const ChunkedScene chunked = make_chunks(framed_scene, budgets);
+    const ChunkedScene chunked = make_chunks(framed_scene, budgets, progress.advance());
     RawVector<std::uint32_t>().swap(framed.indices);
-    clock.begin("pack");
+    progress.begin("pack");
     PackedGeometry geometry =
-        quantise(framed_scene, chunked, budgets, {settings.frame_form, settings.position_form});
+        quantise(framed_scene, chunked, budgets, {settings.frame_form, settings.position_form},
+                 progress.advance());
     check_extent(geometry.scene, scene, settings.input);
     add_start(scene, geometry.scene);
     const Tables tables = make_tables(scene.materials, textures);
-    clock.begin("write");
 
     mesh_format::Document document{.scene = geometry.scene,
                                    .meshes = geometry.meshes,
@@ -302,17 +314,20 @@ std::string run_stages(const Settings& settings, const Warn& warn, StageClock& c
                                    .strings = tables.strings};
     EncodedGeometry encoded;
     if (settings.compress) {
-        encoded = compress(geometry);
+        progress.begin("compress");
+        encoded = compress(geometry, progress.advance());
         document.encoded_vertices = encoded.vertices;
         document.encoded_indices = encoded.indices;
     } else {
         document.vertices = geometry.vertices;
         document.indices = geometry.indices;
     }
+    progress.begin("write");
     const bool exports = is_gltf(settings.output);
-    const std::uint64_t bytes = exports ? write_export(document, tables.payloads, settings, warn)
-                                        : write_baked(document, tables.payloads, settings.output);
-    clock.begin("statistics");
+    const std::uint64_t bytes =
+        exports ? write_export(document, tables.payloads, settings, warn)
+                : write_baked(document, tables.payloads, settings.output, progress.advance());
+    progress.begin("statistics");
     if (settings.depfile) write_depfile(*settings.depfile, rule);
     if (settings.stats)
         write_stats(settings,

@@ -322,7 +322,8 @@ std::vector<MaterialParts> by_material(std::span<const CoarseParts::Part> parts)
 
 }  // namespace
 
-ChunkedScene make_chunks(const FramedScene& scene, std::span<const UvBudget> budgets) {
+ChunkedScene make_chunks(const FramedScene& scene, std::span<const UvBudget> budgets,
+                         const Advance& advance) {
     ChunkedScene chunked;
     CoarseParts coarse = split_coarsely(scene);
     const auto& parts = coarse.parts;
@@ -347,6 +348,8 @@ ChunkedScene make_chunks(const FramedScene& scene, std::span<const UvBudget> bud
                     chunks_of(scene, coarse.triangles_of(part), UvLimit(budgets[part.material]),
                               static_cast<std::uint32_t>(3 * before),
                               indices_of(part.first, part.size), makers);
+                advance(static_cast<double>(part.size) /
+                        static_cast<double>(scene.source.triangle_material.size()));
             });
     }
     RawVector<std::uint32_t>().swap(coarse.triangles);

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "cw2-bake/base/advance.h"
 #include "cw2-bake/base/raw_vector.h"
 #include "cw2-bake/geometry/box.h"
 #include "cw2-bake/geometry/framed_scene.h"
@@ -45,6 +46,7 @@ struct ChunkedScene {
 /// chunk's UVs within the material's budget; then orders each chunk's triangles for the vertex
 /// cache. Neighbouring chunks share a mesh as long as its vertices and its UVs allow. The meshes
 /// come in the order of their materials.
-ChunkedScene make_chunks(const FramedScene& scene, std::span<const UvBudget> budgets);
+ChunkedScene make_chunks(const FramedScene& scene, std::span<const UvBudget> budgets,
+                         const Advance& advance = kUnwatched);
 
 }  // namespace bake

@@ -43,8 +43,7 @@ Bytes zstd_frame(std::span<const std::byte> stream, std::size_t first, std::size
         assert(left == 0);
         stream = stream.subspan(size);
     }
-    frame.resize(out.pos);
-    return frame;
+    return {frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(out.pos)};
 }
 
 Bytes encode_vertices(const PackedGeometry& geometry, const MeshRecord& mesh) {
@@ -66,25 +65,33 @@ Bytes encode_indices(const PackedGeometry& geometry, const MeshRecord& mesh) {
 }
 
 /// The sizes of the parts, then the parts.
-Bytes concatenate(std::span<const Bytes> parts) {
-    Bytes section(parts.size() * sizeof(std::uint32_t));
+Bytes concatenate(std::span<Bytes> parts) {
+    std::size_t all = parts.size() * sizeof(std::uint32_t);
+    for (const Bytes& part : parts) all += part.size();
+    Bytes section;
+    section.reserve(all);
+    section.resize(parts.size() * sizeof(std::uint32_t));
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const auto size = static_cast<std::uint32_t>(parts[i].size());
         std::memcpy(section.data() + i * sizeof size, &size, sizeof size);
     }
-    for (const Bytes& part : parts) section.insert(section.end(), part.begin(), part.end());
+    for (Bytes& part : parts) {
+        section.insert(section.end(), part.begin(), part.end());
+        part = {};
+    }
     return section;
 }
 
 }  // namespace
 
-EncodedGeometry compress(const PackedGeometry& geometry) {
+EncodedGeometry compress(const PackedGeometry& geometry, const Advance& advance) {
     meshopt_encodeIndexVersion(1);
     std::vector<Bytes> vertices(geometry.meshes.size());
     std::vector<Bytes> indices(geometry.meshes.size());
     tbb::parallel_for(std::size_t{0}, geometry.meshes.size(), [&](std::size_t i) {
         vertices[i] = encode_vertices(geometry, geometry.meshes[i]);
         indices[i] = encode_indices(geometry, geometry.meshes[i]);
+        advance(1.0 / static_cast<double>(geometry.meshes.size()));
     });
     return {concatenate(vertices), concatenate(indices)};
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "cw2-bake/base/advance.h"
 #include "cw2-bake/geometry/quantise.h"
 
 namespace bake {
@@ -15,6 +16,6 @@ struct EncodedGeometry {
 };
 
 /// Lossless; mesh by mesh in parallel, the same bytes for any number of threads.
-EncodedGeometry compress(const PackedGeometry& geometry);
+EncodedGeometry compress(const PackedGeometry& geometry, const Advance& advance = kUnwatched);
 
 }  // namespace bake

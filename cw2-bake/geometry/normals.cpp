@@ -183,7 +183,8 @@ class SmoothNormals {
 };
 
 /// Positions are taken in a few rounds, so that no list of all corners is ever whole.
-void make_smooth(const Missing& missing, const FirstEqual& positions, SourceScene& scene) {
+void make_smooth(const Missing& missing, const FirstEqual& positions, SourceScene& scene,
+                 const Advance& advance) {
     constexpr std::size_t kMostRounds = 12;
     const std::size_t rounds = std::min(scene.corners.size() / kCornersPerRound + 1, kMostRounds);
     const std::size_t tasks =
@@ -212,6 +213,7 @@ void make_smooth(const Missing& missing, const FirstEqual& positions, SourceScen
                               corners);
         });
         for (SmoothNormals& maker : makers) maker.store();
+        advance(1.0 / static_cast<double>(rounds));
     }
 }
 
@@ -253,12 +255,12 @@ void make_flat(const Missing& missing, SourceScene& scene) {
 
 }  // namespace
 
-void generate_normals(SourceScene& scene, const FirstEqual& positions) {
+void generate_normals(SourceScene& scene, const FirstEqual& positions, const Advance& advance) {
     if (scene.smoothing_group.empty()) return;  // every corner has one
     const Missing missing = find_missing(scene, positions);
     const auto is_smooth = [](const RunVector::Run& run) { return run.number != 0; };
     if (std::ranges::any_of(scene.smoothing_group.runs(), is_smooth))
-        make_smooth(missing, positions, scene);
+        make_smooth(missing, positions, scene, advance);
     // The lists were many and of all sizes.
     if (scene.corners.size() > kCornersPerRound) malloc_trim(0);
     make_flat(missing, scene);

@@ -1,6 +1,7 @@
 // Normals for corners that state none.
 #pragma once
 
+#include "cw2-bake/base/advance.h"
 #include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/geometry/index_set.h"
 
@@ -14,6 +15,7 @@ namespace bake {
 /// equal, as `positions` tells. Where that sum vanishes the triangle's own normal serves, and +Y
 /// where that has no area. Triangles that follow each other and face one way, to within 1e-4
 /// radians, share one normal.
-void generate_normals(SourceScene& scene, const FirstEqual& positions);
+void generate_normals(SourceScene& scene, const FirstEqual& positions,
+                      const Advance& advance = kUnwatched);
 
 }  // namespace bake

@@ -365,7 +365,8 @@ void finish_scene(PackedGeometry& geometry, const Box<glm::vec3>& box,
 }  // namespace
 
 PackedGeometry quantise(const FramedScene& scene, const ChunkedScene& chunked,
-                        std::span<const UvBudget> materials, const QuantiseSettings& settings) {
+                        std::span<const UvBudget> materials, const QuantiseSettings& settings,
+                        const Advance& advance) {
     const std::span<const ChunkedMesh> meshes = chunked.meshes;
     PackedGeometry geometry;
     geometry.indices = chunked.indices;
@@ -401,6 +402,7 @@ PackedGeometry quantise(const FramedScene& scene, const ChunkedScene& chunked,
         block.errors = packers[block.mesh].pack(block.begin, block.end, center,
                                                 geometry.vertices.data() + record.vertex_offset +
                                                     block.begin * layout_of(record).stride);
+        advance(1.0 / static_cast<double>(blocks.size()));
     });
     finish_scene(geometry, box, blocks);
     for (const ChunkedMesh& mesh : meshes)

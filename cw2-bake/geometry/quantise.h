@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "cw2-bake/base/advance.h"
 #include "cw2-bake/base/raw_vector.h"
 #include "cw2-bake/geometry/chunks.h"
 #include "mesh-format/layout.h"
@@ -32,6 +33,7 @@ struct PackedGeometry {
 /// most 65,536 points and every coordinate stays below 2^24 steps from the origin. UVs go to a
 /// lattice for each mesh; where half its step exceeds 1/8 texel the mesh keeps float UVs.
 PackedGeometry quantise(const FramedScene& scene, const ChunkedScene& chunked,
-                        std::span<const UvBudget> materials, const QuantiseSettings& settings);
+                        std::span<const UvBudget> materials, const QuantiseSettings& settings,
+                        const Advance& advance = kUnwatched);
 
 }  // namespace bake

@@ -259,7 +259,7 @@ void add_splits(std::vector<Splits>& all, FramedTriangles& triangles) {
 
 }  // namespace
 
-void add_tangents(const SourceScene& scene, FramedTriangles& triangles) {
+void add_tangents(const SourceScene& scene, FramedTriangles& triangles, const Advance& advance) {
     if (!scene.colors.empty()) triangles.colors.resize(triangles.vertices.size());
     std::vector<Splits> splits;
     {
@@ -273,6 +273,7 @@ void add_tangents(const SourceScene& scene, FramedTriangles& triangles) {
             const auto begin = static_cast<std::uint32_t>(i) * kVerticesPerBlock;
             splits[i] =
                 blocks.local().make(begin, begin + std::min(kVerticesPerBlock, count - begin));
+            advance(1.0 / static_cast<double>(splits.size()));
         });
     }
     add_splits(splits, triangles);

@@ -1,6 +1,7 @@
 // Tangents by MikkTSpace's rules.
 #pragma once
 
+#include "cw2-bake/base/advance.h"
 #include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/geometry/weld.h"
 
@@ -13,6 +14,7 @@ namespace bake {
 ///
 /// A tangent's xyz has unit length and, where the UVs allow it, is orthogonal to the vertex's
 /// normal; w = +1 or -1, so that the bitangent is w * cross(normal, tangent), along +v (up).
-void add_tangents(const SourceScene& scene, FramedTriangles& triangles);
+void add_tangents(const SourceScene& scene, FramedTriangles& triangles,
+                  const Advance& advance = kUnwatched);
 
 }  // namespace bake

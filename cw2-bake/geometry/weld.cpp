@@ -94,7 +94,7 @@ void unify(std::span<Corner> corners, std::uint32_t Corner::*index, const FirstE
 
 }  // namespace
 
-FramedTriangles weld(SourceScene& scene, const FirstEqual& positions) {
+FramedTriangles weld(SourceScene& scene, const FirstEqual& positions, const Advance& advance) {
     const auto absent_uv = static_cast<std::uint32_t>(scene.uvs.size());
     scene.uvs.emplace_back(0.0f);
     // One attribute after the other: what tells which are equal takes memory while all corners are
@@ -136,6 +136,7 @@ FramedTriangles weld(SourceScene& scene, const FirstEqual& positions) {
             begin = end;
         }
         used.release(3 * block.end * sizeof(Corner));
+        advance(static_cast<double>(block.end - block.begin) / static_cast<double>(triangle_count));
     };
     const std::size_t at_once =
         2 * tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/vec4.hpp>
 
+#include "cw2-bake/base/advance.h"
 #include "cw2-bake/base/raw_vector.h"
 #include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/geometry/index_set.h"
@@ -26,6 +27,7 @@ struct FramedTriangles {
 /// attributes a vertex has the first one; a missing UV is 0. Every corner has a normal; `positions`
 /// tells which of the scene's are equal. The scene's corners go: what is made of them takes the
 /// place of their memory, bit by bit.
-FramedTriangles weld(SourceScene& scene, const FirstEqual& positions);
+FramedTriangles weld(SourceScene& scene, const FirstEqual& positions,
+                     const Advance& advance = kUnwatched);
 
 }  // namespace bake

@@ -25,7 +25,8 @@ namespace {
 constexpr std::size_t kMaxTriangles = 0xFFFF'FFFFu / 3;
 
 [[noreturn]] void throw_at(std::string_view text, const std::string& name, const ObjError& error) {
-    throw BakeError(fmt::format("{}:{}: {}", name, line_number(text, error.offset), error.what));
+    throw BakeError(
+        fmt::format("{}:{}: {}", name, LineCounter(text, true).at(error.offset), error.what));
 }
 
 /// Appends, and makes room as if the rest of the text held nothing else, so that growing never
@@ -230,6 +231,7 @@ Assembly::Face Assembly::parse_face(std::size_t triangle) const {
             bounds.before[kObjPosition] += count32(chunk.positions);
             bounds.before[kObjUv] += count32(chunk.uvs);
             bounds.before[kObjNormal] += count32(chunk.normals);
+            common::forget_mapped(std::as_bytes(std::span(text_)).subspan(begin, end - begin));
         }
     }
     chunk.clear();
@@ -253,7 +255,8 @@ void Assembly::warn_of_missing(ObjAttribute attribute, std::size_t count,
     const std::string why =
         index      ? index->what
         : !element ? "its length is 0"
-                   : fmt::format("line {}: {}", line_number(text_, element->offset), element->what);
+                   : fmt::format("line {}: {}", LineCounter(text_, true).at(element->offset),
+                                 element->what);
     contents_.warnings.push_back(
         {face.offset, fmt::format("{} {} a {} that is missing; {} ({})", count,
                                   count == 1 ? "corner has" : "corners have", name,
@@ -339,7 +342,7 @@ struct Piece {
 };
 
 void parse_pieces(std::string_view text, std::size_t chunk_bytes, const ObjContext& context,
-                  Assembly& assembly) {
+                  Assembly& assembly, const Advance& advance) {
     const std::size_t in_flight =
         2 * tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     // The last stage finishes pieces in order, so a slot is free when its turn comes again.
@@ -371,6 +374,7 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, const ObjConte
     const auto take = [&](Piece* piece) {
         if (piece->error) std::rethrow_exception(piece->error);
         assembly.append_chunk(piece->chunk, text.size() - piece->end);
+        advance(static_cast<double>(piece->end - piece->begin) / static_cast<double>(text.size()));
         if (piece->end - released < kReleaseBytes && piece->end < text.size()) return;
         common::forget_mapped(
             std::as_bytes(std::span(text)).subspan(released, piece->end - released));
@@ -386,9 +390,9 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, const ObjConte
 }  // namespace
 
 ObjContents parse_obj(std::string_view text, const std::string& name, std::size_t chunk_bytes,
-                      const glm::dvec3& origin) {
+                      const glm::dvec3& origin, const Advance& advance) {
     Assembly assembly(text, name, chunk_bytes);
-    parse_pieces(text, chunk_bytes, {.origin = origin}, assembly);
+    parse_pieces(text, chunk_bytes, {.origin = origin}, assembly, advance);
     ObjContents contents = std::move(assembly).finish();
     contents.scene.origin = origin;
     return contents;

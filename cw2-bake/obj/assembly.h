@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cw2-bake/base/advance.h"
 #include "cw2-bake/base/source_scene.h"
 #include "cw2-bake/obj/chunk.h"
 
@@ -37,6 +38,7 @@ struct ObjContents {
 /// UV or a normal whose index is out of range, or whose line holds no finite numbers, is absent,
 /// with a warning.
 ObjContents parse_obj(std::string_view text, const std::string& name, std::size_t chunk_bytes,
-                      const glm::dvec3& origin = glm::dvec3(0.0));
+                      const glm::dvec3& origin = glm::dvec3(0.0),
+                      const Advance& advance = kUnwatched);
 
 }  // namespace bake

@@ -287,7 +287,7 @@ void Libraries::warn_of_unknown(const std::vector<MtlMaterial>& materials,
 }  // namespace
 
 SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::size_t chunk_bytes,
-                     const std::filesystem::path& root) {
+                     const std::filesystem::path& root, const Advance& advance) {
     const common::MappedFile file = map_file(path);
     const std::string name = path.string();
     const std::string_view text = without_padding(
@@ -297,7 +297,7 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
         throw BakeError(name + ": is no OBJ: it holds binary data");
     }
 
-    ObjContents contents = parse_obj(text, name, chunk_bytes);
+    ObjContents contents = parse_obj(text, name, chunk_bytes, glm::dvec3(0.0), advance);
     for (int i = 0; i < kMostOrigins; ++i) {
         const auto origin = distant_origin(contents.scene.positions, contents.scene.corners);
         if (!origin) break;

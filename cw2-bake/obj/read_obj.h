@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 
+#include "cw2-bake/base/advance.h"
 #include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/base/source_scene.h"
 
@@ -23,6 +24,6 @@ inline constexpr std::size_t kObjChunkBytes = 256 * 1024;
 /// `root`.
 SourceScene read_obj(const std::filesystem::path& path, const Warn& warn,
                      std::size_t chunk_bytes = kObjChunkBytes,
-                     const std::filesystem::path& root = {});
+                     const std::filesystem::path& root = {}, const Advance& advance = kUnwatched);
 
 }  // namespace bake
