@@ -1,6 +1,11 @@
 #include "cw2-bake/base/text_lines.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <span>
 
 #include "common/io.h"
@@ -62,9 +67,25 @@ std::string take_statement(std::string_view text, std::size_t& offset) {
 
 namespace {
 
+/// How often `c` is in `text`. Counts in bytes, of which compilers make vectors.
+std::size_t count_of(std::string_view text, char c) {
+    constexpr std::size_t kLanes = 32;
+    constexpr std::size_t kMostRows = 255;
+    std::size_t count = 0;
+    while (text.size() >= kLanes) {
+        const std::size_t rows = std::min(text.size() / kLanes, kMostRows);
+        std::uint8_t lanes[kLanes] = {};
+        for (std::size_t row = 0; row < rows; ++row)
+            for (std::size_t i = 0; i < kLanes; ++i) lanes[i] += text[row * kLanes + i] == c;
+        for (const std::uint8_t lane : lanes) count += lane;
+        text.remove_prefix(rows * kLanes);
+    }
+    return count + static_cast<std::size_t>(std::ranges::count(text, c));
+}
+
 /// How many there are in `text`; a CR before `next` LF is none.
 std::size_t line_ends(std::string_view text, std::string_view next) {
-    auto count = static_cast<std::size_t>(std::ranges::count(text, '\n'));
+    std::size_t count = count_of(text, '\n');
     for (std::size_t cr = text.find('\r'); cr != text.npos; cr = text.find('\r', cr + 1))
         count += (cr + 1 < text.size() ? text.substr(cr + 1, 1) : next) != "\n";
     return count;
@@ -79,12 +100,18 @@ std::size_t line_number(std::string_view text, std::size_t offset) {
 std::size_t LineCounter::at(std::size_t offset) {
     if (offset < offset_) *this = LineCounter(text_, is_mapped_);
     constexpr std::size_t kBlock = 1 << 20;
-    for (const std::size_t end = std::min(offset, text_.size()); offset_ < end;) {
-        const std::string_view block = text_.substr(offset_, std::min(kBlock, end - offset_));
-        line_ += line_ends(block, text_.substr(offset_ + block.size(), 1));
-        if (is_mapped_) common::forget_mapped(std::as_bytes(std::span(block)));
-        offset_ += block.size();
-    }
+    const std::size_t end = std::min(offset, text_.size());
+    const auto count = [&](const tbb::blocked_range<std::size_t>& part, std::size_t lines) {
+        for (std::size_t begin = part.begin(); begin < part.end(); begin += kBlock) {
+            const auto block = text_.substr(begin, std::min(kBlock, part.end() - begin));
+            lines += line_ends(block, text_.substr(begin + block.size(), 1));
+            if (is_mapped_) common::forget_mapped(std::as_bytes(std::span(block)));
+        }
+        return lines;
+    };
+    line_ += tbb::parallel_reduce(tbb::blocked_range<std::size_t>(offset_, end, kBlock),
+                                  std::size_t{0}, count, std::plus());
+    offset_ = end;
     return line_;
 }
 

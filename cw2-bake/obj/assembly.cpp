@@ -66,10 +66,12 @@ ObjCounts counts_of(const SourceScene& scene) {
 /// Takes the chunks in the order of the text.
 class Assembly {
  public:
-    Assembly(std::string_view text, const std::string& name, std::size_t chunk_bytes)
-        : text_(text), name_(name), chunk_bytes_(chunk_bytes) {}
+    Assembly(std::string_view text, const std::string& name) : text_(text), name_(name) {
+        contents_.lines = LineCounter(text, true);
+    }
 
-    void append_chunk(ObjChunk& chunk, std::size_t text_bytes_left);
+    /// The chunk of the text from `begin` to `end`.
+    void append_chunk(ObjChunk& chunk, std::size_t begin, std::size_t end);
     ObjContents finish() &&;
 
  private:
@@ -92,8 +94,13 @@ class Assembly {
 
     std::string_view text_;
     const std::string& name_;
-    const std::size_t chunk_bytes_;
     ObjContents contents_;
+    struct PieceStart {
+        std::size_t offset;  // in the text
+        std::size_t first_triangle;
+        ObjCounts before;
+    };
+    std::vector<PieceStart> pieces_;
     ObjCounts max_index_{};
     std::unordered_map<std::optional<std::string>, std::uint32_t> material_ids_;
     ObjMaterialUse material_use_{};
@@ -126,8 +133,11 @@ bool Assembly::resolve(ObjChunk& chunk) const {
     return good;
 }
 
-void Assembly::append_chunk(ObjChunk& chunk, std::size_t text_bytes_left) {
+void Assembly::append_chunk(ObjChunk& chunk, std::size_t begin, std::size_t end) {
     if (chunk.error) throw_at(text_, name_, *chunk.error);
+    const SourceScene& scene = contents_.scene;
+    pieces_.push_back({begin, scene.corners.size() / 3, counts_of(scene)});
+    const std::size_t text_bytes_left = text_.size() - end;
     has_invalid_ |= chunk.has_invalid;
     has_zero_normal_ |= chunk.has_zero_normal;
     if (chunk.has_relative && !resolve(chunk)) has_invalid_ = true;
@@ -218,21 +228,21 @@ bool Assembly::is_good(ObjAttribute attribute) const {
 
 /// Parses the statement of a triangle again, now that the bounds of its indices are known.
 Assembly::Face Assembly::parse_face(std::size_t triangle) const {
-    ObjContext bounds{.before = {}, .total = counts_of(contents_.scene), .known = true};
+    const auto piece =
+        std::ranges::upper_bound(pieces_, triangle, {}, &PieceStart::first_triangle) - 1;
+    ObjContext bounds{.before = piece->before, .total = counts_of(contents_.scene), .known = true};
+    triangle -= piece->first_triangle;
     ObjChunk chunk;
-    std::size_t begin = 0, end = 0;
-    for (const std::size_t bytes : {chunk_bytes_, std::size_t{1}}) {
-        for (;; begin = end) {
-            end = obj_chunk_end(text_, begin, bytes);
-            chunk.clear();
-            parse_obj_chunk(text_, begin, end, ObjContext{}, chunk);
-            if (triangle < chunk.triangles.size()) break;
-            triangle -= chunk.triangles.size();
-            bounds.before[kObjPosition] += count32(chunk.positions);
-            bounds.before[kObjUv] += count32(chunk.uvs);
-            bounds.before[kObjNormal] += count32(chunk.normals);
-            common::forget_mapped(std::as_bytes(std::span(text_)).subspan(begin, end - begin));
-        }
+    std::size_t begin = piece->offset, end = begin;
+    for (;; begin = end) {
+        end = obj_chunk_end(text_, begin, 1);
+        chunk.clear();
+        parse_obj_chunk(text_, begin, end, ObjContext{}, chunk);
+        if (triangle < chunk.triangles.size()) break;
+        triangle -= chunk.triangles.size();
+        bounds.before[kObjPosition] += count32(chunk.positions);
+        bounds.before[kObjUv] += count32(chunk.uvs);
+        bounds.before[kObjNormal] += count32(chunk.normals);
     }
     chunk.clear();
     parse_obj_chunk(text_, begin, end, bounds, chunk);
@@ -255,8 +265,7 @@ void Assembly::warn_of_missing(ObjAttribute attribute, std::size_t count,
     const std::string why =
         index      ? index->what
         : !element ? "its length is 0"
-                   : fmt::format("line {}: {}", LineCounter(text_, true).at(element->offset),
-                                 element->what);
+                   : fmt::format("line {}: {}", contents_.lines.at(element->offset), element->what);
     contents_.warnings.push_back(
         {face.offset, fmt::format("{} {} a {} that is missing; {} ({})", count,
                                   count == 1 ? "corner has" : "corners have", name,
@@ -373,7 +382,7 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, const ObjConte
     };
     const auto take = [&](Piece* piece) {
         if (piece->error) std::rethrow_exception(piece->error);
-        assembly.append_chunk(piece->chunk, text.size() - piece->end);
+        assembly.append_chunk(piece->chunk, piece->begin, piece->end);
         advance(static_cast<double>(piece->end - piece->begin) / static_cast<double>(text.size()));
         if (piece->end - released < kReleaseBytes && piece->end < text.size()) return;
         common::forget_mapped(
@@ -391,7 +400,7 @@ void parse_pieces(std::string_view text, std::size_t chunk_bytes, const ObjConte
 
 ObjContents parse_obj(std::string_view text, const std::string& name, std::size_t chunk_bytes,
                       const glm::dvec3& origin, const Advance& advance) {
-    Assembly assembly(text, name, chunk_bytes);
+    Assembly assembly(text, name);
     parse_pieces(text, chunk_bytes, {.origin = origin}, assembly, advance);
     ObjContents contents = std::move(assembly).finish();
     contents.scene.origin = origin;

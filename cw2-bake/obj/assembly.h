@@ -10,6 +10,7 @@
 
 #include "cw2-bake/base/advance.h"
 #include "cw2-bake/base/source_scene.h"
+#include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/obj/chunk.h"
 
 namespace bake {
@@ -28,6 +29,7 @@ struct ObjContents {
     std::vector<std::optional<std::size_t>> material_offsets;
     std::vector<ObjStatement> libraries;  ///< mtllib
     std::vector<ObjError> warnings;       ///< in the order of the text
+    LineCounter lines{{}};                ///< of the text
     bool lacks_normals = false;           ///< some corner states no normal, or some normal is 0
 };
 

@@ -70,6 +70,7 @@ void prepare_missing_normals(const std::vector<ObjSmoothingUse>& uses, SourceSce
     constexpr std::size_t kBlock = 1 << 14;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.corners.size(), kBlock),
                       [&](const auto& block) {
+                          if (is_missing) return;
                           for (std::size_t i = block.begin(); i < block.end(); ++i)
                               if (scene.corners[i].normal == kAbsent) is_missing = true;
                       });
@@ -305,9 +306,8 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
     }
     SourceScene& scene = contents.scene;
     if (scene.corners.empty()) throw BakeError(name + ": has no faces");
-    LineCounter lines(text, true);
     for (const ObjError& warning : contents.warnings)
-        warn(fmt::format("{}:{}: {}", name, lines.at(warning.offset), warning.what));
+        warn(fmt::format("{}:{}: {}", name, contents.lines.at(warning.offset), warning.what));
     triangulate_polygons(contents.polygons, scene);
     if (contents.lacks_normals) prepare_missing_normals(contents.smoothing_uses, scene);
 
