@@ -70,10 +70,11 @@ class OffscreenTarget {
         submit_and_wait(device_, commands_);
     }
 
-    /// Renders one picture and waits for it. Calls `sampled` with the number of its frames that are
-    /// done.
+    /// Renders one picture and waits for it; `next`: the one after it, if there is one. Calls
+    /// `sampled` with the number of its frames that are done.
     template <typename Sampled>
-    void render(const Scene& scene, const FrameSettings& settings, Sampled sampled) {
+    void render(const Scene& scene, const FrameSettings& settings,
+                const std::optional<FrameSettings>& next, Sampled sampled) {
         gpu_milliseconds_ = 0.0;
         for (std::uint32_t i = 0; i < samples_; ++i) {
             begin_commands(commands_);
@@ -84,7 +85,13 @@ class OffscreenTarget {
                                                               : averager_.mean(commands_);
                 read_back(commands_, image, extent_, pixels_);
             }
-            submit_and_wait(device_, commands_);
+            std::future<void> drawn =
+                std::async(std::launch::async, [&] { submit_and_wait(device_, commands_); });
+            if (i + 1 < samples_)
+                averager_.expect(scene, settings, extent_, i + 1, samples_);
+            else if (next)
+                averager_.expect(scene, *next, extent_, 0, samples_);
+            drawn.get();
             gpu_milliseconds_ += averager_.renderer().gpu_milliseconds(0).value_or(0.0);
             sampled(i + 1);
         }
@@ -211,7 +218,8 @@ struct Studio {
         Clock::time_point start = Clock::now();
         {
             FrameProgress progress(target.samples());
-            target.render(scene, settings, [&](std::uint32_t frames) { progress.show(frames); });
+            target.render(scene, settings, std::nullopt,
+                          [&](std::uint32_t frames) { progress.show(frames); });
         }
         timings.first_frame = milliseconds_since(start);
         start = Clock::now();
@@ -226,10 +234,15 @@ struct Studio {
         const Clock::time_point turn_start = Clock::now();
         Saver saver(options.size, target.png());
         std::optional<FrameProgress> progress(range.size());
+        const auto at = [&](std::uint32_t frame) {
+            return turned(options, settings, frame, range.count, scene.bounds());
+        };
         for (std::uint32_t frame = range.first; frame <= range.last; ++frame) {
-            const FrameSettings now = turned(options, settings, frame, range.count, scene.bounds());
+            const FrameSettings now = at(frame);
             const Clock::time_point start = Clock::now();
-            target.render(scene, now, [](std::uint32_t) {});
+            target.render(scene, now,
+                          frame < range.last ? std::optional(at(frame + 1)) : std::nullopt,
+                          [](std::uint32_t) {});
             if (frame == range.first) timings.first_frame = milliseconds_since(start);
             saver.save(file_of(options, frame), target.pixels(), now);
             progress->show(frame - range.first + 1);
@@ -244,19 +257,24 @@ struct Studio {
     Bench measure(const FrameSettings& settings) {
         constexpr double kMilliseconds = 1e3 / CLOCKS_PER_SEC;
         // What is built or compiled when it first draws.
-        target.render(scene, settings, [](std::uint32_t) {});
+        const std::uint32_t count = *options.bench_pictures;
+        const auto at = [&](std::uint32_t picture) {
+            return bench_frame(options, settings, picture, scene.bounds());
+        };
+        target.render(scene, settings, at(0), [](std::uint32_t) {});
         Bench bench;
-        for (std::uint32_t i = 0; i < *options.bench_pictures; ++i) {
-            const FrameSettings now = bench_frame(options, settings, i, scene.bounds());
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const FrameSettings now = at(i);
+            const std::optional<FrameSettings> next =
+                i + 1 < count ? std::optional(at(i + 1)) : std::nullopt;
             const Clock::time_point start = Clock::now();
             const std::clock_t cpu_start = std::clock();
-            target.render(scene, now, [](std::uint32_t) {});
+            target.render(scene, now, next, [](std::uint32_t) {});
             bench.wall.push_back(milliseconds_since(start));
             bench.cpu.push_back(kMilliseconds * static_cast<double>(std::clock() - cpu_start));
             bench.device.push_back(target.gpu_milliseconds());
         }
-        target.count(bench, scene,
-                     bench_frame(options, settings, *options.bench_pictures - 1, scene.bounds()));
+        target.count(bench, scene, at(count - 1));
         return bench;
     }
 };

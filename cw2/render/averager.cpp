@@ -207,6 +207,12 @@ std::vector<TriangleCulling::Shown> Averager::shown(const Scene& scene,
     return renderer_.shown(scene, targets, settings);
 }
 
+void Averager::expect(const Scene& scene, const FrameSettings& settings, VkExtent2D extent,
+                      std::uint32_t index, std::uint32_t count) {
+    const FrameTarget target = this->target(extent, index, count);
+    renderer_.shown(scene, {&target, 1}, settings);
+}
+
 void Averager::count_fragments(VkCommandBuffer commands, const Scene& scene,
                                const FrameSettings& settings, VkExtent2D extent) {
     fit(extent);

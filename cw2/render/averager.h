@@ -45,6 +45,10 @@ class Averager {
     std::vector<TriangleCulling::Shown> shown(const Scene& scene, const FrameSettings& settings,
                                               VkExtent2D extent, std::uint32_t count);
 
+    /// Finds out what frame `index` of `count` will draw, which add() then knows.
+    void expect(const Scene& scene, const FrameSettings& settings, VkExtent2D extent,
+                std::uint32_t index, std::uint32_t count);
+
     /// Records a frame at the pixels' centres whose fragments are counted, see
     /// Renderer::fragments(). What there is of a mean stays.
     void count_fragments(VkCommandBuffer commands, const Scene& scene,
