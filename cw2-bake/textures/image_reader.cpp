@@ -4,13 +4,16 @@
 #include <OpenImageIO/strutil.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <new>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "cw2-bake/textures/read_image.h"
 
@@ -72,8 +75,26 @@ void check_held(const OIIO::ImageInput& input, const std::filesystem::path& path
         throw ImageError("is damaged: it is too short for the size that it states");
 }
 
+/// The reader of GIFs takes memory for the screen that the file states (GIF89a, 18) when it opens
+/// it.
+void check_screen_held(const std::filesystem::path& path) {
+    std::array<unsigned char, 10> start{};
+    std::ifstream(path, std::ios::binary)
+        .read(reinterpret_cast<char*>(start.data()), static_cast<std::streamsize>(start.size()));
+    if (std::string_view(reinterpret_cast<const char*>(start.data()), 4) != "GIF8") return;
+    const int width = start[6] + 256 * start[7];
+    const int height = start[8] + 256 * start[9];
+    bake::check_extent(width, height);
+    // A code of 12 bits, the longest, stands for 4096 texels at most.
+    constexpr std::uint64_t kMostInflation = 4096;
+    if (std::uint64_t(width) * std::uint64_t(height) / kMostInflation >
+        std::filesystem::file_size(path))
+        throw ImageError("is damaged: it is too short for the size that it states");
+}
+
 Image read(const char* path) {
     refuse_movies(path);
+    check_screen_held(path);
     OIIO::ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;
     const auto input = OIIO::ImageInput::open(path, &hints);

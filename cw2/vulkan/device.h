@@ -87,10 +87,12 @@ class Device {
     };
     /// Waits for whoever has it.
     Queue queue() const { return Queue(*this); }
-    /// Waits until the device has nothing to do.
+    /// Waits until the device has nothing to do; once more where that fails, since what it uses is
+    /// about to be destroyed.
     VkResult wait_idle() const {
         const Queue no_submissions = queue();
-        return vkDeviceWaitIdle(device_.get());
+        const VkResult result = vkDeviceWaitIdle(device_.get());
+        return result == VK_SUCCESS ? result : vkDeviceWaitIdle(device_.get());
     }
     std::uint32_t queue_family() const { return queue_family_; }
     const VkPhysicalDeviceProperties& properties() const { return properties_; }

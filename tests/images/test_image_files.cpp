@@ -371,6 +371,7 @@ TEST(ImageFiles, AFileThatIsTooShortForItsSizeIsRefusedBeforeThereIsMemoryForIt)
         {"a.pgm", "P2 16384 16384 255\n0 0 0\n"},
         {"a.pfm", "PF\n16384 16384\n-1.0\n"},
         {"a.tga", tga},
+        {"a.gif", {'G', 'I', 'F', '8', '9', 'a', 0, 0x40, 0, 0x40, 0, 0, 0, ';'}},
         {"a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 16384\n"}};
     for (const auto& [name, bytes] : table) {
         write_bytes(folder / name, bytes);
@@ -389,6 +390,13 @@ TEST(ImageFiles, AFileThatIsTooShortForItsSizeIsRefusedBeforeThereIsMemoryForIt)
         },
         OIIO::TypeDesc::UINT8, "compression", "rle");
     EXPECT_EQ(bake::read_image(folder / "flat.tga").width, 512u);
+    write_image(
+        folder / "flat.gif", 2048, 2048, 3,
+        [](int, int) {
+            return std::vector{0.0, 0.0, 0.0};
+        },
+        OIIO::TypeDesc::UINT8);
+    EXPECT_EQ(bake::read_image(folder / "flat.gif").width, 2048u);
 }
 
 TEST(ImageFiles, AMovieIsNoImage) {
