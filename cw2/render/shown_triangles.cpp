@@ -30,6 +30,8 @@ struct SeenCorner {
 };
 
 using Triangle = std::array<PictureCorner, 3>;
+/// Five planes leave 8 corners of a triangle, and no more than these where rounding bends it.
+using CutPolygon = std::array<glm::vec3, 20>;
 
 /// What may be seen of the triangles, until all that hides is drawn.
 struct Candidate {
@@ -234,10 +236,10 @@ class Finder {
             glm::vec4{0.0f, 0.0f, 1.0f, -near_ * (1.0f + kDepthErrors)},
             glm::vec4{1.0f, 0.0f, reach_x, 0.0f}, glm::vec4{-1.0f, 0.0f, reach_x, 0.0f},
             glm::vec4{0.0f, 1.0f, reach_y, 0.0f}, glm::vec4{0.0f, -1.0f, reach_y, 0.0f}};
-        std::array<glm::vec3, 8> polygon{corners[0]->clip, corners[1]->clip, corners[2]->clip};
+        CutPolygon polygon{corners[0]->clip, corners[1]->clip, corners[2]->clip};
         std::size_t count = 3;
         for (const glm::vec4& plane : planes) {
-            const std::array<glm::vec3, 8> whole = polygon;
+            const CutPolygon whole = polygon;
             const std::size_t whole_count = count;
             const auto inside = [&](const glm::vec3& p) {
                 return glm::dot(plane, glm::vec4(p, 1.0f));

@@ -29,7 +29,8 @@ constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// What is left of a triangle after it is cut by the planes of a picture.
 struct Polygon {
-    std::array<glm::vec3, 8> corners;
+    /// Five planes leave 8, and no more than these where rounding bends the triangle.
+    std::array<glm::vec3, 20> corners;
     std::size_t count;
 };
 
