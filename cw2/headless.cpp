@@ -256,11 +256,11 @@ struct Studio {
 
     Bench measure(const FrameSettings& settings) {
         constexpr double kMilliseconds = 1e3 / CLOCKS_PER_SEC;
-        // What is built or compiled when it first draws.
         const std::uint32_t count = *options.bench_pictures;
         const auto at = [&](std::uint32_t picture) {
             return bench_frame(options, settings, picture, scene.bounds());
         };
+        // What is built or compiled when it first draws.
         target.render(scene, settings, at(0), [](std::uint32_t) {});
         Bench bench;
         for (std::uint32_t i = 0; i < count; ++i) {

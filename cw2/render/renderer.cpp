@@ -148,12 +148,11 @@ glm::mat4 clip_from_picture(const VkRect2D& area, VkExtent2D extent) {
 }
 
 std::vector<std::uint32_t> visible_chunks(const Scene& scene, const FrameTarget& target,
-                                          const FrameSettings& settings) {
+                                          const FrameSettings& settings, const glm::mat4& clip) {
     std::vector<std::uint32_t> visible;
     find_visible(scene.chunks(), scene.draws(),
-                 clip_from_picture(area_of(target), target.extent) *
-                     scene_uniforms(scene, target, settings).projCam,
-                 settings.camera.position, visible);
+                 clip_from_picture(area_of(target), target.extent) * clip, settings.camera.position,
+                 visible);
     return visible;
 }
 
@@ -349,9 +348,9 @@ std::vector<TriangleCulling::Shown> Renderer::shown(const Scene& scene,
     if (!culling_) return {};
     std::vector<TriangleCulling::Wanted> views;
     for (const FrameTarget& target : targets) {
-        views.push_back({{scene_uniforms(scene, target, settings).projCam,
-                          near_distance(scene.bounds()), target.extent, area_of(target)},
-                         visible_chunks(scene, target, settings)});
+        const glm::mat4 clip = scene_uniforms(scene, target, settings).projCam;
+        views.push_back({{clip, near_distance(scene.bounds()), target.extent, area_of(target)},
+                         visible_chunks(scene, target, settings, clip)});
     }
     return culling_->find(scene, views);
 }
@@ -365,7 +364,8 @@ void Renderer::find_ranges(const Scene& scene, const FrameTarget& target,
         shown_indices_ = shown.buffer;
         ranges_.assign(shown.ranges.begin(), shown.ranges.end());
     } else {
-        for (const std::uint32_t index : visible_chunks(scene, target, settings)) {
+        const glm::mat4 clip = scene_uniforms(scene, target, settings).projCam;
+        for (const std::uint32_t index : visible_chunks(scene, target, settings, clip)) {
             const SceneChunk& chunk = scene.chunks()[index];
             ranges_.push_back({chunk.draw, chunk.first_index, chunk.index_count});
         }

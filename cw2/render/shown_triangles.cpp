@@ -4,12 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <limits>
 #include <optional>
 #include <utility>
+
+#include "cw2/render/visibility.h"
 
 namespace cw2 {
 
@@ -30,8 +31,6 @@ struct SeenCorner {
 };
 
 using Triangle = std::array<PictureCorner, 3>;
-/// Five planes leave 8 corners of a triangle, and no more than these where rounding bends it.
-using CutPolygon = std::array<glm::vec3, 20>;
 
 /// What may be seen of the triangles, until all that hides is drawn.
 struct Candidate {
@@ -219,8 +218,8 @@ class Finder {
 
     static bool occludes(const Draw& draw) { return !draw.alpha_mask; }
 
-    /// The same of one that reaches behind the near plane, or far beside the picture: it is cut
-    /// (Sutherland and Hodgman 1974), and taken to be seen.
+    /// The same of one that reaches behind the near plane, or far beside the picture: it is cut,
+    /// and taken to be seen.
     std::optional<Candidate> draw_cut(const std::array<const SeenCorner*, 3>& corners,
                                       const Draw& draw) {
         if (most(corners[0]->clip.z, corners[1]->clip.z, corners[2]->clip.z) <
@@ -236,26 +235,12 @@ class Finder {
             glm::vec4{0.0f, 0.0f, 1.0f, -near_ * (1.0f + kDepthErrors)},
             glm::vec4{1.0f, 0.0f, reach_x, 0.0f}, glm::vec4{-1.0f, 0.0f, reach_x, 0.0f},
             glm::vec4{0.0f, 1.0f, reach_y, 0.0f}, glm::vec4{0.0f, -1.0f, reach_y, 0.0f}};
-        CutPolygon polygon{corners[0]->clip, corners[1]->clip, corners[2]->clip};
-        std::size_t count = 3;
-        for (const glm::vec4& plane : planes) {
-            const CutPolygon whole = polygon;
-            const std::size_t whole_count = count;
-            const auto inside = [&](const glm::vec3& p) {
-                return glm::dot(plane, glm::vec4(p, 1.0f));
-            };
-            count = 0;
-            for (std::size_t i = 0; i < whole_count; ++i) {
-                const glm::vec3 &p = whole[i], &q = whole[(i + 1) % whole_count];
-                const float at_p = inside(p), at_q = inside(q);
-                if (at_p >= 0.0f) polygon[count++] = p;
-                if ((at_p >= 0.0f) == (at_q >= 0.0f)) continue;
-                polygon[count++] = p + at_p / (at_p - at_q) * (q - p);
-            }
-        }
-        for (std::size_t i = 2; i < count; ++i) {
-            const Triangle triangle{in_picture(polygon[0]), in_picture(polygon[i - 1]),
-                                    in_picture(polygon[i])};
+        const CutTriangle polygon =
+            cut({corners[0]->clip, corners[1]->clip, corners[2]->clip}, planes);
+        for (std::size_t i = 2; i < polygon.count; ++i) {
+            const Triangle triangle{in_picture(polygon.corners[0]),
+                                    in_picture(polygon.corners[i - 1]),
+                                    in_picture(polygon.corners[i])};
             const bool is_finite = std::ranges::all_of(triangle, [](const PictureCorner& corner) {
                 return std::abs(corner.x) < DepthBuffer::kReach &&
                        std::abs(corner.y) < DepthBuffer::kReach;

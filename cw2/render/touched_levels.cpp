@@ -27,13 +27,6 @@ using mesh_format::MeshRecord;
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
-/// What is left of a triangle after it is cut by the planes of a picture.
-struct Polygon {
-    /// Five planes leave 8, and no more than these where rounding bends the triangle.
-    std::array<glm::vec3, 20> corners;
-    std::size_t count;
-};
-
 /// A camera's picture. Positions are seen from it: x, y, and the distance along its direction.
 struct Lens {
     glm::mat4 view;
@@ -56,26 +49,6 @@ struct Lens {
     }
     bool shows(const glm::vec3& center, float radius) const {
         return !is_outside(planes, seen(center), radius);
-    }
-    /// Sutherland and Hodgman 1974.
-    Polygon shown(const std::array<glm::vec3, 3>& triangle) const {
-        Polygon polygon{{triangle[0], triangle[1], triangle[2]}, 3};
-        for (const glm::vec4& plane : planes) {
-            const Polygon whole = polygon;
-            polygon.count = 0;
-            for (std::size_t i = 0; i < whole.count; ++i) {
-                const glm::vec3& p = whole.corners[i];
-                const glm::vec3& q = whole.corners[(i + 1) % whole.count];
-                const float inside = glm::dot(plane, glm::vec4(p, 1.0f));
-                const float next_inside = glm::dot(plane, glm::vec4(q, 1.0f));
-                if (inside >= 0.0f) polygon.corners[polygon.count++] = p;
-                if ((inside >= 0.0f) != (next_inside >= 0.0f)) {
-                    polygon.corners[polygon.count++] =
-                        p + inside / (inside - next_inside) * (q - p);
-                }
-            }
-        }
-        return polygon;
     }
 };
 
@@ -114,7 +87,7 @@ class LeastDerivative {
 /// to the next; nothing where it shows nothing.
 float least_step(const Lens& lens, const std::array<glm::vec3, 3>& seen,
                  const std::array<glm::vec2, 3>& uv) {
-    const Polygon shown = lens.shown(seen);
+    const CutTriangle shown = cut(seen, lens.planes);
     if (shown.count == 0) return kNever;
     const glm::vec3 a = seen[1] - seen[0], b = seen[2] - seen[0];
     const glm::vec2 ua = uv[1] - uv[0], ub = uv[2] - uv[0];

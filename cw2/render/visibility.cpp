@@ -35,6 +35,24 @@ bool is_outside(const FrustumPlanes& planes, const glm::vec3& center, float radi
     });
 }
 
+CutTriangle cut(const std::array<glm::vec3, 3>& triangle, std::span<const glm::vec4> planes) {
+    CutTriangle polygon{{triangle[0], triangle[1], triangle[2]}, 3};
+    for (const glm::vec4& plane : planes) {
+        const CutTriangle whole = polygon;
+        polygon.count = 0;
+        for (std::size_t i = 0; i < whole.count; ++i) {
+            const glm::vec3& p = whole.corners[i];
+            const glm::vec3& q = whole.corners[(i + 1) % whole.count];
+            const float inside = glm::dot(plane, glm::vec4(p, 1.0f));
+            const float next_inside = glm::dot(plane, glm::vec4(q, 1.0f));
+            if (inside >= 0.0f) polygon.corners[polygon.count++] = p;
+            if ((inside >= 0.0f) != (next_inside >= 0.0f))
+                polygon.corners[polygon.count++] = p + inside / (inside - next_inside) * (q - p);
+        }
+    }
+    return polygon;
+}
+
 void find_visible(std::span<const SceneChunk> chunks, std::span<const Draw> draws,
                   const glm::mat4& clip_from_world, const glm::vec3& camera_position,
                   std::vector<std::uint32_t>& visible) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -19,6 +20,15 @@ using FrustumPlanes = std::array<glm::vec4, 5>;
 /// Of what `clip` makes clip space of, with reversed depth.
 FrustumPlanes frustum_planes(const glm::mat4& clip);
 bool is_outside(const FrustumPlanes& planes, const glm::vec3& center, float radius);
+
+/// What up to five planes leave of a triangle: up to 8 corners, and no more than there is room for
+/// where rounding bends it.
+struct CutTriangle {
+    std::array<glm::vec3, 20> corners;
+    std::size_t count;
+};
+/// Of the side that `planes` point to, as those of a frustum do (Sutherland and Hodgman 1974).
+CutTriangle cut(const std::array<glm::vec3, 3>& triangle, std::span<const glm::vec4> planes);
 
 /// Writes to `visible` the indices of the chunks whose spheres meet the frustum and, where back
 /// faces are culled, whose normal cones do not all look away: opaque chunks before alpha-masked
