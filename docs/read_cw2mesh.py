@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads .cw2mesh files of format version 6, as docs/format.md describes them.
+"""Reads .cw2mesh files of format version 7, as docs/format.md describes them.
 
     import read_cw2mesh
     scene = read_cw2mesh.read("model.cw2mesh")
@@ -17,7 +17,7 @@ import math
 import struct
 import sys
 
-VERSION = 6
+VERSION = 7
 SECTIONS = ("scene", "meshes", "chunks", "materials", "textures", "sources", "strings", "vertices",
             "indices", "texels", "encoded_vertices", "encoded_indices")
 MAP_USES = ("base_color", "roughness", "metalness", "normal", "alpha_mask", "emission")
@@ -391,102 +391,104 @@ def split_parts(data, count):
     return parts
 
 
+GOES_ON, PIVOT_NUMBER, NEXT_TWO, TWO_NUMBERS = 0, 29, 30, 31
+CLOSES_PIVOT, CLOSES_SECOND, THIRD_NUMBER = 1, 2, 4
+
+
 class IndexDecoder:
-    """The index codec of meshoptimizer: triangles by edges and vertices that were seen not long ago."""
+    """Triangles, each at the border of those before it, and the vertices that each vertex is predicted
+    from."""
 
-    def __init__(self, data, triangle_count):
-        require(len(data) >= 1 + triangle_count + 16 and data[0] in (0xE0, 0xE1), "encoded indices are damaged")
-        self.data, self.at, self.end = data, 1 + triangle_count, len(data) - 16
-        self.codes, self.table = data[1:1 + triangle_count], data[-16:]
-        self.seen = 13 if data[0] == 0xE1 else 15  # codes below name a vertex that was seen
-        self.edges, self.vertices = [(0, 0)] * 16, [0] * 16  # the last ones, newest first
-        self.next = self.last = 0
+    def __init__(self, data, triangle_count, vertex_count):
+        count, odd = divmod(len(data) - triangle_count, 2)
+        require(count >= 0 and not odd, "encoded indices are damaged")
+        self.codes = data[:triangle_count]
+        self.numbers = [low | high << 8 for low, high in zip(data[triangle_count:][:count],
+                                                             data[triangle_count + count:])]
+        self.used = self.last = 0
+        self.vertex_count = vertex_count
+        self.neighbours = []
+        # Of each vertex that was reached its place on the border: where the edge to it comes from, the
+        # third vertex of that edge's triangle, where the edge from it goes; and one that this hides.
+        self.places = {0: [0, 0, 0, None]}
+        self.seen = [0] * 32
 
-    def byte(self):
-        require(self.at < self.end, "encoded indices are damaged")
-        self.at += 1
-        return self.data[self.at - 1]
-
-    def free(self):
-        """An index by its difference to the last such."""
-        number = shift = 0
-        while True:
-            byte = self.byte()
-            number |= (byte & 127) << shift
-            shift += 7
-            if byte < 128 or shift > 28:
-                break
-        self.last = (self.last + (number >> 1 ^ -(number & 1))) & 0xFFFFFFFF
+    def number(self):
+        require(self.used < len(self.numbers), "encoded indices are damaged")
+        number = self.numbers[self.used]
+        self.used += 1
+        self.last = self.last + (number >> 1 ^ -(number & 1)) & 0xFFFF
         return self.last
 
-    def new(self):
-        self.next += 1
-        return self.next - 1
+    def reach(self, vertex, neighbours=None):
+        """The vertices up to one; without neighbours it has the one before."""
+        require(vertex < self.vertex_count, "an index is out of range")
+        while len(self.neighbours) <= vertex:
+            v = len(self.neighbours)
+            self.places[v] = [0, 0, 0, None]
+            self.neighbours.append(neighbours if neighbours and v == vertex else (max(v - 1, 0),) * 3)
 
-    def push(self, vertices, edges):
-        self.vertices = (vertices[::-1] + self.vertices)[:16]
-        self.edges = (edges[::-1] + self.edges)[:16]
-
-    def beside_edge(self, code):
-        """A triangle at an edge that was seen."""
-        (a, b), third = self.edges[code >> 4], code & 15
-        if 0 < third < self.seen:
-            c, pushed = self.vertices[third], []
-        else:
-            if third == 0:
-                c = self.new()
-            elif third == 15:
-                c = self.free()
-            else:
-                c = self.last = self.last + (1 if third == 14 else -1)
-            pushed = [c]
-        self.push(pushed, [(c, b), (a, c)])
-        return a, b, c
-
-    def alone(self, code):
-        """A triangle at no edge that was seen."""
-        kinds = self.table[code & 15] if code < 0xFE else self.byte()
-        if code >= 0xFE and kinds == 0:
-            self.next = 0
-        kinds = (15 if code == 0xFF else 0, kinds >> 4, kinds & 15)
-        corners = [self.new() if kind == 0 else self.vertices[kind - 1] for kind in kinds]
-        for i in range(3):
-            if kinds[i] == 15:  # after those that are new
-                corners[i] = self.free()
-        a, b, c = corners
-        self.push([corner for corner, kind in zip(corners, kinds) if kind in (0, 15)],
-                  [(b, a), (c, b), (a, c)])
-        return a, b, c
+    def uncover(self, vertex):
+        if self.places[vertex][3]:
+            self.places[vertex] = self.places[vertex][3]
 
     def decode(self):
-        triangles = [self.beside_edge(code) if code < 0xF0 else self.alone(code) for code in self.codes]
-        require(self.at == self.end, "encoded indices are damaged")
-        return tuple(index & 0xFFFF for triangle in triangles for index in triangle)
+        indices, p, z, beyond = [], 0, 0, 0
+        for code in self.codes:
+            start, end, y = code >> 3, code & 7, z
+            if start != GOES_ON:
+                if start < PIVOT_NUMBER:
+                    p = self.seen[-start]
+                else:
+                    p, y = len(self.neighbours), len(self.neighbours) + 1
+                    p = p if start == NEXT_TWO else self.number()
+                    self.reach(p)
+                if start <= PIVOT_NUMBER:
+                    y, beyond = self.places[p][:2]
+                else:
+                    y = self.number() if start == TWO_NUMBERS else y
+                    self.reach(y, (p, p, p))
+                    beyond = y
+                self.seen.append(y)
+            z = self.end(end, p, y, beyond)
+            if start > PIVOT_NUMBER:
+                self.places[p][2] = y
+                self.places[y][:2] = p, z
+            self.seen.append(z)
+            indices += [p, y, z]
+            beyond = y
+        require(self.used == len(self.numbers), "encoded indices are damaged")
+        self.reach(self.vertex_count - 1)
+        return tuple(indices), self.neighbours
 
-
-def find_neighbours(indices, vertex_count):
-    """Of each vertex, the three that it is predicted from."""
-    neighbours = [(max(v - 1, 0),) * 3 for v in range(vertex_count)]
-    last, new = [(v, v) for v in range(vertex_count)], 0
-    for i in range(0, len(indices), 3):
-        triangle = indices[i:i + 3]
-        while max(triangle) >= new:
-            v = min(index for index in triangle if index >= new)
-            corner = triangle.index(v)
-            x, y = triangle[(corner + 1) % 3], triangle[(corner + 2) % 3]
-            new = v + 1
-            if x < v and y < v:
-                c = v
-                for vertex, other in ((x, y), (y, x)):
-                    if other in last[vertex]:
-                        c = last[vertex][1 if last[vertex][0] == other else 0]
-                        break
-                neighbours[v] = (x, y, c) if c < v else (x, x, x)
-            elif x < v or y < v:
-                neighbours[v] = (x if x < v else y,) * 3
-        for k in range(3):
-            last[triangle[k]] = triangle[(k + 1) % 3], triangle[(k + 2) % 3]
-    return neighbours
+    def end(self, end, p, y, beyond):
+        """The third vertex; the border goes round the triangle from now on."""
+        places = self.places
+        if end == CLOSES_PIVOT | CLOSES_SECOND:
+            z = places[p][2]
+            for vertex in (p, y, z):
+                self.uncover(vertex)
+        elif end == CLOSES_PIVOT:
+            z = places[p][2]
+            self.uncover(p)
+            places[z][:2] = y, p
+            places[y][2] = z
+        elif end == CLOSES_SECOND:
+            z = places[y][0]
+            self.uncover(y)
+            places[z][2] = p
+            places[p][:2] = z, y
+        else:
+            require(end in (0, THIRD_NUMBER), "encoded indices are damaged")
+            z = self.number() if end else len(self.neighbours)
+            if z >= len(self.neighbours):
+                self.reach(z, (p, y, beyond))
+                places[z] = [y, p, p, None]
+            else:
+                places[z] = places[z][:2] + [p, [y, p, places[z][2], None]]
+            places[y][2] = z
+            places[p][:2] = z, y
+        return z
 
 
 def read_numbers(stream, at, count, numbers, size):
@@ -656,7 +658,7 @@ def sum_normals(indices, vertex_count, out, stride):
     return sums
 
 
-def decode_vertices(mesh, indices, part):
+def decode_vertices(mesh, indices, neighbours, part):
     """The vertices of a mesh, as in a plain file."""
     position, frame, uv, color = mesh.forms
     frame_at, uv_at, color_at, stride = vertex_layout(mesh.forms)
@@ -671,7 +673,7 @@ def decode_vertices(mesh, indices, part):
     model, at = stream[0], 1
     require(model == 0 or in_digits and (model == 1 or model == 2 and position == "quantised"),
             "encoded geometry is damaged")
-    neighbours, out = find_neighbours(indices, count), bytearray(count * stride)
+    out = bytearray(count * stride)
     for offset, numbers, size in words:
         decode_words(stream, at, neighbours, numbers, size, out, offset, stride)
         at += numbers * size * count
@@ -761,11 +763,12 @@ def unpack_mesh(scene, mesh, vertices, indices):
 
 
 def decode_mesh(scene, mesh, vertices, indices):
-    # No triangle takes more than a code, a byte, and three numbers of five.
-    stream = unwrap(indices, 17 + mesh.index_count // 3 * 17)
-    mesh.indices = IndexDecoder(stream, mesh.index_count // 3).decode()
-    require(max(mesh.indices) < mesh.vertex_count, "an index is out of range")
-    mesh.vertices = unpack_vertices(decode_vertices(mesh, mesh.indices, vertices), mesh, scene.position_step)
+    # No triangle takes more than a code, a byte, and three numbers of two.
+    stream = unwrap(indices, mesh.index_count // 3 * 7)
+    decoder = IndexDecoder(stream, mesh.index_count // 3, mesh.vertex_count)
+    mesh.indices, neighbours = decoder.decode()
+    data = decode_vertices(mesh, mesh.indices, neighbours, vertices)
+    mesh.vertices = unpack_vertices(data, mesh, scene.position_step)
 
 
 def main():

@@ -1,6 +1,5 @@
 #include "mesh-format/decode.h"
 
-#include <meshoptimizer.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -46,23 +45,18 @@ bool unwrap(Bytes frame, std::size_t size, Stream& stream) {
     return ZSTD_decompress(stream.get(), size, frame.data(), frame.size()) == size;
 }
 
-bool decode_indices(const MeshRecord& mesh, Bytes part, std::span<std::uint16_t> out) {
-    const auto size = ZSTD_getFrameContentSize(part.data(), part.size());
+bool decode_mesh(const MeshRecord& mesh, Bytes index_part, Bytes vertex_part,
+                 std::span<std::uint16_t> indices, std::byte* vertices) {
+    const auto size = ZSTD_getFrameContentSize(index_part.data(), index_part.size());
     // Errors are the largest values.
-    if (size > meshopt_encodeIndexBufferBound(mesh.index_count, mesh.vertex_count)) return false;
+    if (size > index_stream_bound(mesh.index_count)) return false;
     Stream stream;
-    return unwrap(part, size, stream) &&
-           meshopt_decodeIndexBuffer(out.data(), out.size(),
-                                     reinterpret_cast<const unsigned char*>(stream.get()),
-                                     size) == 0 &&
-           std::ranges::max(out) < mesh.vertex_count;
-}
-
-bool decode_vertices(const MeshRecord& mesh, Bytes part, std::span<const std::uint16_t> indices,
-                     std::byte* out) {
-    Stream stream;
-    return unwrap(part, vertex_stream_bytes(mesh), stream) &&
-           decode_vertices(mesh, indices, stream.get(), out);
+    const auto memory = std::make_unique_for_overwrite<Neighbours[]>(mesh.vertex_count);
+    const std::span neighbours(memory.get(), mesh.vertex_count);
+    return unwrap(index_part, size, stream) &&
+           decode_indices({stream.get(), size}, indices, neighbours) &&
+           unwrap(vertex_part, vertex_stream_bytes(mesh), stream) &&
+           decode_vertices(mesh, indices, neighbours, stream.get(), vertices);
 }
 
 void run(const Loop& loop, std::size_t count, const std::function<void(std::size_t)>& task) {
@@ -96,7 +90,7 @@ DecodedGeometry decode(Document& document, std::string_view name, const Loop& lo
     const std::vector<Bytes> vertices = parts_of(document.encoded_vertices, count);
     const std::vector<Bytes> indices = parts_of(document.encoded_indices, count);
     // The tasks are the first to touch this memory, each its mesh's and what lies before that.
-    const auto decode_mesh = [&](std::size_t i) {
+    const auto decode_one = [&](std::size_t i) {
         const MeshRecord& mesh = document.meshes[i];
         const bool is_first = i == 0;
         std::byte* const mesh_vertices = geometry.vertices.get() + mesh.vertex_offset;
@@ -107,13 +101,12 @@ DecodedGeometry decode(Document& document, std::string_view name, const Loop& lo
                   mesh_indices.data(), std::uint16_t{0});
         if (vertex_layout(mesh.forms).has_gaps)
             std::fill(mesh_vertices, geometry.vertices.get() + vertex_end(mesh), std::byte{0});
-        if (!decode_indices(mesh, indices[i], mesh_indices) ||
-            !decode_vertices(mesh, vertices[i], mesh_indices, mesh_vertices)) {
+        if (!decode_mesh(mesh, indices[i], vertices[i], mesh_indices, mesh_vertices)) {
             throw FormatError(std::string(name) + ": mesh " + std::to_string(i) +
                               ": its encoded geometry is damaged");
         }
     };
-    run(loop, count, decode_mesh);
+    run(loop, count, decode_one);
     const std::span all_vertices(geometry.vertices.get(), document.scene.vertex_bytes);
     const std::span all_indices(geometry.indices.get(), document.scene.index_count);
     const MeshRecord& last = document.meshes.back();

@@ -18,7 +18,7 @@
 //   encoded vertices, encoded indices
 //              in a compressed file, what becomes the sections vertices and indices, which are
 //              then empty: uint32[], the stored size of each mesh's part, then those parts, each a
-//              Zstandard frame. The indices' holds a stream of meshoptimizer's index codec, the
+//              Zstandard frame. The indices' holds an index stream, see TriangleStart, the
 //              vertices' a vertex stream, see FrameModel
 #pragma once
 
@@ -34,7 +34,7 @@ namespace mesh_format {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 inline constexpr std::array<char, 8> kMagic{'C', 'W', '2', 'M', 'E', 'S', 'H', '\0'};
-inline constexpr std::uint32_t kVersion = 6;
+inline constexpr std::uint32_t kVersion = 7;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 /// A mesh's vertices are addressed by 16-bit indices.
 inline constexpr std::uint32_t kMaxMeshVertices = 65'536;
@@ -94,12 +94,37 @@ enum class FrameForm : std::uint8_t {
     f32,     ///< 4 x float, the handedness in the sign of w
 };
 
+/// A mesh's triangles in a compressed file are a code for each, one byte: kTriangleStart times a
+/// TriangleStart, and flags, TriangleEnd. Then come the low bytes of all numbers, and their high
+/// ones: a number is a vertex by its difference d to the vertex that the number before stood for
+/// (at first 0), modulo 2^16, as 2 d, or as -2 d - 1 if d is negative.
+///
+/// A triangle goes from its pivot to its second and its third vertex. Triangles have a border, and
+/// vertices come one after the other: a new one that no number says is the next. index_stream.cpp
+/// says what the border becomes.
+enum TriangleStart : std::uint32_t {
+    kGoesOn,  ///< the pivot is that of the triangle before, the second vertex its third
+    // 1 to 28: the pivot is the vertex that came so many before in the list of those seen (all
+    // third vertices, and second ones but with kGoesOn), the second vertex as with kPivotNumber.
+    kPivotNumber = 29,  ///< a number is the pivot; the border comes to it from the second vertex
+    kNextTwo,           ///< the next two vertices are pivot and second vertex
+    kTwoNumbers,        ///< two numbers are
+};
+
+/// What a triangle's third vertex is; the next one without any of these.
+enum TriangleEnd : std::uint32_t {
+    kClosesPivot = 1,   ///< the border's edge from the pivot goes there
+    kClosesSecond = 2,  ///< the border's edge to the second vertex comes from there
+    kThirdNumber = 4,   ///< a number
+    kTriangleStart = 8,
+};
+
 /// A mesh's vertices in a compressed file are one byte, a FrameModel, and planes of one byte a
 /// vertex. The vertex's parts follow each other: position, UV, colour, frame. A part of k numbers
 /// of n bytes each has k n planes: the lowest byte of the first number, of the second, ..., then
 /// the next bytes. A number stands for how much the vertex's differs from an expected one, d modulo
 /// 256^n: as 2 d, or as -2 d - 1 if d is negative. Expected is a + b - c, the numbers of the three
-/// Neighbours in vertex_prediction.h; 0 for vertex 0. The bits of a float count as a number once
+/// Neighbours in index_stream.h; 0 for vertex 0. The bits of a float count as a number once
 /// the first, or in negative floats all of them, are inverted.
 ///
 /// A frame in digits, see tangent_frame.h, has seven planes. The first holds the number of the

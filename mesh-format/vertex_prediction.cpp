@@ -3,100 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <utility>
 
 #include "mesh-format/frame_constants.h"
 
 namespace mesh_format {
 
 namespace {
-
-/// Finds the neighbours of one vertex after the other.
-class NeighbourFinder {
- public:
-    explicit NeighbourFinder(std::uint32_t vertex_count)
-        : neighbours_(vertex_count), last_(vertex_count) {
-        for (std::uint32_t v = 0; v < vertex_count; ++v) {
-            neighbours_[v] = as(static_cast<std::uint16_t>(v > 0 ? v - 1 : 0));
-            // No edge goes there.
-            last_[v] = {static_cast<std::uint16_t>(v), static_cast<std::uint16_t>(v)};
-        }
-    }
-
-    void add(std::uint16_t p, std::uint16_t q, std::uint16_t r) {
-        const bool p_is_new = p >= next_;
-        const bool q_is_new = q >= next_;
-        const bool r_is_new = r >= next_;
-        if (p_is_new + q_is_new + r_is_new > 1) [[unlikely]] {
-            add_several(p, q, r);
-        } else if (r_is_new) {
-            add_vertex(r, p, q);
-        } else if (q_is_new) {
-            add_vertex(q, r, p);
-        } else if (p_is_new) {
-            add_vertex(p, q, r);
-        }
-        last_[p] = {q, r};
-        last_[q] = {r, p};
-        last_[r] = {p, q};
-    }
-
-    std::vector<Neighbours> take() { return std::move(neighbours_); }
-
- private:
-    struct Edge {
-        std::uint16_t x, y;
-    };
-
-    static Neighbours as(std::uint16_t a) { return {a, a, a}; }
-
-    /// New vertex v of the triangle that goes on with x and y.
-    void add_vertex(std::uint16_t v, std::uint16_t x, std::uint16_t y) {
-        next_ = v + 1u;
-        if (x < v && y < v) {
-            neighbours_[v] = across(v, x, y);
-        } else if (x < v || y < v) {
-            neighbours_[v] = as(x < v ? x : y);
-        }
-    }
-
-    /// The new vertices of a triangle, the smallest first.
-    void add_several(std::uint16_t p, std::uint16_t q, std::uint16_t r) {
-        for (int i = 0; i < 3; ++i) {
-            const auto comes_first = [&](std::uint32_t v, std::uint32_t x, std::uint32_t y) {
-                return v >= next_ && (x < next_ || v <= x) && (y < next_ || v <= y);
-            };
-            if (comes_first(p, q, r)) {
-                add_vertex(p, q, r);
-            } else if (comes_first(q, r, p)) {
-                add_vertex(q, r, p);
-            } else if (comes_first(r, p, q)) {
-                add_vertex(r, p, q);
-            }
-        }
-    }
-
-    Neighbours across(std::uint16_t v, std::uint16_t x, std::uint16_t y) const {
-        std::uint16_t c = v;
-        if (last_[x].x == y) {
-            c = last_[x].y;
-        } else if (last_[x].y == y) {
-            c = last_[x].x;
-        } else if (last_[y].x == x) {
-            c = last_[y].y;
-        } else if (last_[y].y == x) {
-            c = last_[y].x;
-        }
-        return c < v ? Neighbours{x, y, c} : as(x);
-    }
-
-    std::vector<Neighbours> neighbours_;
-    std::vector<Edge> last_;  // by vertex: those that follow it in its last triangle
-    std::uint32_t next_ = 0;  // vertices before it are not new
-};
-
-// --- Ratios of quat48 and quat32
-// ------------------------------------------------------------------
 
 constexpr int kOne = 32'768;
 constexpr int kAngles = 16'383;  // in 45 degrees, as many as quat48 has
@@ -192,14 +104,6 @@ std::int64_t number(const std::byte* position, std::size_t axis) {
 }
 
 }  // namespace
-
-std::vector<Neighbours> find_neighbours(std::span<const std::uint16_t> indices,
-                                        std::uint32_t vertex_count) {
-    NeighbourFinder finder(vertex_count);
-    for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
-        finder.add(indices[i], indices[i + 1], indices[i + 2]);
-    return finder.take();
-}
 
 std::vector<Normal> sum_normals(std::span<const std::uint16_t> indices, std::uint32_t vertex_count,
                                 const std::byte* positions, std::size_t stride) {

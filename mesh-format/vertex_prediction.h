@@ -13,23 +13,6 @@
 
 namespace mesh_format {
 
-/// Three vertices before a vertex; what one of its numbers probably is: a + b - c, those of the
-/// three. Where b and c are the same, that is a.
-struct Neighbours {
-    std::uint16_t a, b, c;
-    bool operator==(const Neighbours&) const = default;
-};
-
-/// The neighbours of `vertex_count` vertices, at most kMaxMeshVertices, of which the triangles are
-/// read one after the other. A triangle's vertices beyond all earlier ones are new, the smallest
-/// first. Let x and y be those that follow a new vertex v in its triangle. If both are before v,
-/// and of the last earlier triangles at x and at y the first with this edge has c < v as its
-/// third vertex, v lies across: x, y, c. Else v is as x, as y or as v - 1, the first of these that
-/// is before v: that one is a, b and c. So is 0 of vertex 0. A triangle may start at any of its
-/// corners. Every index must be below `vertex_count`.
-std::vector<Neighbours> find_neighbours(std::span<const std::uint16_t> indices,
-                                        std::uint32_t vertex_count);
-
 /// A direction, of any length.
 using Normal = std::array<std::int64_t, 3>;
 

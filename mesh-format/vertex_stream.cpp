@@ -310,8 +310,8 @@ std::size_t vertex_stream_bytes(const MeshRecord& mesh) {
 
 std::vector<std::byte> encode_vertices(const MeshRecord& mesh,
                                        std::span<const std::uint16_t> indices,
+                                       std::span<const Neighbours> neighbours,
                                        const std::byte* vertices) {
-    const std::vector<Neighbours> neighbours = find_neighbours(indices, mesh.vertex_count);
     std::vector<std::byte> stream(vertex_stream_bytes(mesh));
     std::byte* planes = stream.data() + 1;
     for_each_words(mesh.forms, neighbours, [&](auto part, std::uint32_t offset) {
@@ -337,10 +337,10 @@ std::vector<std::byte> encode_vertices(const MeshRecord& mesh,
 }
 
 bool decode_vertices(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
-                     const std::byte* stream, std::byte* vertices) {
+                     std::span<const Neighbours> neighbours, const std::byte* stream,
+                     std::byte* vertices) {
     const auto model = static_cast<FrameModel>(stream[0]);
     if (!allows(mesh.forms, model)) return false;
-    const std::vector<Neighbours> neighbours = find_neighbours(indices, mesh.vertex_count);
     const std::byte* planes = stream + 1;
     for_each_words(mesh.forms, neighbours, [&](auto part, std::uint32_t offset) {
         part.decode(planes, vertices + offset);

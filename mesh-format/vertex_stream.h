@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "mesh-format/index_stream.h"
 #include "mesh-format/layout.h"
 
 namespace mesh_format {
@@ -14,15 +15,18 @@ namespace mesh_format {
 /// Bytes of a mesh's stream.
 std::size_t vertex_stream_bytes(const MeshRecord& mesh);
 
-/// The stream of `mesh`, whose vertices and indices start at those given.
+/// The stream of `mesh`, whose vertices start at those given. `indices` are as they are once
+/// decoded, but for the corners at which triangles start; `neighbours` came with them.
 std::vector<std::byte> encode_vertices(const MeshRecord& mesh,
                                        std::span<const std::uint16_t> indices,
+                                       std::span<const Neighbours> neighbours,
                                        const std::byte* vertices);
 
 /// Writes the vertices that the vertex_stream_bytes(mesh) bytes at `stream` stand for to
 /// `vertices`, but for the gaps between their parts. Every index must be below the number of
 /// vertices. False if the stream is none; any other bytes become vertices, too.
 bool decode_vertices(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
-                     const std::byte* stream, std::byte* vertices);
+                     std::span<const Neighbours> neighbours, const std::byte* stream,
+                     std::byte* vertices);
 
 }  // namespace mesh_format

@@ -33,7 +33,7 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS cw2-openimageio)
 set(CPACK_DEBIAN_OPENIMAGEIO_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_OPENIMAGEIO_PACKAGE_DEPENDS "cw2 (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "cw2, libmeshoptimizer-dev, libzstd-dev")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "cw2, libzstd-dev")
 set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION
 "cw2-bake turns OBJ and glTF into compact .cw2mesh files; cw2 draws any of
 them with Vulkan, in a window or, with no display, into PNG and EXR pictures.")
@@ -42,7 +42,7 @@ set(CPACK_COMPONENT_OPENIMAGEIO_DESCRIPTION
 these are PNG and JPEG.")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
 "Reads and checks .cw2mesh files in C++20 programs, with the standard library
-alone; decodes compressed ones with meshoptimizer and Zstandard.")
+alone; decodes compressed ones with Zstandard.")
 
 foreach(package IN LISTS packages)
     string(REPLACE ":" ";" package ${package})

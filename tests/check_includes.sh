@@ -20,7 +20,7 @@ common/encode_png.*     | zlib.h
 mesh-format/*           | mesh-format/*
 mesh-format/tangent_frame.cpp | common/every_cpu.h
 mesh-format/frame_rotation.h | common/every_cpu.h
-mesh-format/decode.cpp  | meshoptimizer.h zstd.h
+mesh-format/decode.cpp  | zstd.h
 cw2-bake/*              | common/* mesh-format/* glm/* fmt/* tbb/* CLI/* meshoptimizer.h zstd.h xxhash.h
 cw2-bake/inspection.cpp | nlohmann/json.hpp
 cw2-bake/obj/*          | fast_float/* emmintrin.h

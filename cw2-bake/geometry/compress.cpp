@@ -1,16 +1,18 @@
 #include "cw2-bake/geometry/compress.h"
 
-#include <meshoptimizer.h>
 #include <tbb/parallel_for.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <memory>
 #include <new>
 #include <span>
+#include <utility>
 
+#include "mesh-format/index_stream.h"
 #include "mesh-format/vertex_stream.h"
 
 namespace bake {
@@ -32,7 +34,8 @@ Bytes zstd_frame(std::span<const std::byte> stream, std::size_t first, std::size
     ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kZstdLevel);
     ZSTD_CCtx_setPledgedSrcSize(context.get(), stream.size());
     constexpr std::size_t kBlockHeader = 8;  // three bytes, in fact
-    Bytes frame(ZSTD_compressBound(stream.size()) + stream.size() / next * kBlockHeader);
+    Bytes frame(ZSTD_compressBound(stream.size()) +
+                stream.size() / std::max(next, std::size_t{1}) * kBlockHeader);
     ZSTD_outBuffer out{frame.data(), frame.size(), 0};
     for (std::size_t size = first; !stream.empty(); size = next) {
         ZSTD_inBuffer in{stream.data(), size, 0};
@@ -46,22 +49,23 @@ Bytes zstd_frame(std::span<const std::byte> stream, std::size_t first, std::size
     return {frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(out.pos)};
 }
 
-Bytes encode_vertices(const PackedGeometry& geometry, const MeshRecord& mesh) {
-    const Bytes stream = mesh_format::encode_vertices(
-        mesh, geometry.indices.subspan(mesh.first_index, mesh.index_count),
-        geometry.vertices.data() + mesh.vertex_offset);
-    // The first plane goes with the byte before it.
-    return zstd_frame(stream, 1 + mesh.vertex_count, mesh.vertex_count);
-}
+/// A mesh's parts of the two sections.
+struct Parts {
+    Bytes vertices;
+    Bytes indices;
+};
 
-Bytes encode_indices(const PackedGeometry& geometry, const MeshRecord& mesh) {
-    Bytes stream(meshopt_encodeIndexBufferBound(mesh.index_count, mesh.vertex_count));
-    stream.resize(
-        meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(stream.data()), stream.size(),
-                                  geometry.indices.data() + mesh.first_index, mesh.index_count));
-    // A byte, one for each triangle, and then what those leave open.
-    const std::size_t first = 1 + mesh.index_count / 3;
-    return zstd_frame(stream, first, stream.size() - first);
+Parts encode(const PackedGeometry& geometry, const MeshRecord& mesh) {
+    const auto indices = geometry.indices.subspan(mesh.first_index, mesh.index_count);
+    std::vector<mesh_format::Neighbours> neighbours(mesh.vertex_count);
+    const Bytes index_stream = mesh_format::encode_indices(indices, neighbours);
+    const Bytes vertex_stream = mesh_format::encode_vertices(
+        mesh, indices, neighbours, geometry.vertices.data() + mesh.vertex_offset);
+    const std::size_t codes = mesh.index_count / 3;
+    const std::size_t numbers = (index_stream.size() - codes) / 2;
+    // The first plane goes with the byte before it.
+    return {zstd_frame(vertex_stream, 1 + mesh.vertex_count, mesh.vertex_count),
+            zstd_frame(index_stream, codes, numbers)};
 }
 
 /// The sizes of the parts, then the parts.
@@ -85,12 +89,12 @@ Bytes concatenate(std::span<Bytes> parts) {
 }  // namespace
 
 EncodedGeometry compress(const PackedGeometry& geometry, const Advance& advance) {
-    meshopt_encodeIndexVersion(1);
     std::vector<Bytes> vertices(geometry.meshes.size());
     std::vector<Bytes> indices(geometry.meshes.size());
     tbb::parallel_for(std::size_t{0}, geometry.meshes.size(), [&](std::size_t i) {
-        vertices[i] = encode_vertices(geometry, geometry.meshes[i]);
-        indices[i] = encode_indices(geometry, geometry.meshes[i]);
+        Parts parts = encode(geometry, geometry.meshes[i]);
+        vertices[i] = std::move(parts.vertices);
+        indices[i] = std::move(parts.indices);
         advance(1.0 / static_cast<double>(geometry.meshes.size()));
     });
     return {concatenate(vertices), concatenate(indices)};

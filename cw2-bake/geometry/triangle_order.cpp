@@ -24,26 +24,58 @@ void TriangleOrder::list_triangles(std::span<const std::uint16_t> indices,
     }
 }
 
-void TriangleOrder::emit_around(std::uint16_t vertex, std::span<const std::uint16_t> indices) {
-    std::size_t used = candidates_ = recent_count_;
-    std::uint32_t time = time_;
+/// Returns how many.
+std::size_t TriangleOrder::gather_fan(std::uint16_t vertex,
+                                      std::span<const std::uint16_t> indices) {
+    std::size_t count = 0;
     const std::size_t end = first_[vertex + 1u];
     for (std::size_t i = first_[vertex]; i < end; ++i) {
         const std::uint16_t triangle = triangles_[i];
-        if (done_[triangle]) continue;
-        done_[triangle] = true;
-        result_[result_count_++] = triangle;
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-            const std::uint16_t v = indices[3 * std::size_t{triangle} + corner];
-            // No branches on what no one can predict.
-            recent_[used] = v;
-            used += v != vertex;  // which will be done
-            --left_[v];
-            const bool enters = time - entered_[v] > kCacheSize;
-            entered_[v] = enters ? static_cast<std::uint16_t>(time) : entered_[v];
-            time += enters;
-        }
+        const std::uint16_t* const corners = &indices[3 * std::size_t{triangle}];
+        const std::size_t corner = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
+        const std::uint16_t first = corners[corner == 2 ? 0 : corner + 1];
+        const std::uint16_t last = corners[corner == 0 ? 2 : corner - 1];
+        fan_[count] = {triangle, first, last, false};
+        blades_[first] = static_cast<std::uint16_t>(done_[triangle] ? blades_[first] : count);
+        count += !done_[triangle];
     }
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t next = blades_[fan_[i].last];
+        if (next < count && fan_[next].first == fan_[i].last) fan_[next].goes_on = true;
+    }
+    return count;
+}
+
+void TriangleOrder::emit_around(std::uint16_t vertex, std::span<const std::uint16_t> indices) {
+    std::size_t used = candidates_ = recent_count_;
+    std::uint32_t time = time_;
+    // Without a branch on what no one can predict.
+    const auto use = [&](std::uint16_t v) {
+        const bool enters = time - entered_[v] > kCacheSize;
+        entered_[v] = enters ? static_cast<std::uint16_t>(time) : entered_[v];
+        time += enters;
+    };
+    const std::size_t count = gather_fan(vertex, indices);
+    // Those that go on from none are the starts; what is left then goes round.
+    for (std::size_t i = 0; i < 2 * count; ++i) {
+        std::size_t next = i < count ? i : i - count;
+        if (done_[fan_[next].triangle] || (fan_[next].goes_on && i < count)) continue;
+        use(fan_[next].first);
+        recent_[used++] = fan_[next].first;
+        Blade blade;
+        do {
+            blade = fan_[next];
+            done_[blade.triangle] = true;
+            result_[result_count_++] = blade.triangle;
+            use(vertex);
+            use(blade.last);
+            recent_[used++] = blade.last;
+            --left_[blade.first];
+            --left_[blade.last];
+            next = blades_[blade.last];
+        } while (next < count && fan_[next].first == blade.last && !done_[fan_[next].triangle]);
+    }
+    left_[vertex] = 0;
     recent_count_ = used;
     time_ = time;
 }
@@ -77,6 +109,7 @@ std::span<const std::uint16_t> TriangleOrder::order(std::span<const std::uint16_
     time_ = kCacheSize + 1;
     std::fill_n(entered_.begin(), vertex_count, std::uint16_t{0});
     std::fill_n(done_.begin(), indices.size() / 3, false);
+    std::fill_n(blades_.begin(), vertex_count, std::uint16_t{0});
     recent_count_ = candidates_ = result_count_ = 0;
     scan_ = 0;
     for (std::uint16_t v = next_vertex(vertex_count); v != kNone; v = next_vertex(vertex_count))

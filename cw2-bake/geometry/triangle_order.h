@@ -11,7 +11,9 @@ namespace bake {
 
 /// Orders triangles so that their vertices are used again while a cache of the last kCacheSize
 /// still holds them (after Sander, Nehab and Barczak 2007): all triangles around one vertex, then
-/// those around one of the vertices just used. Reused from chunk to chunk by one thread.
+/// those around one of the vertices just used. Around a vertex each triangle goes on from the edge
+/// that the one before ends with, as long as one does: so a compressed file has little to say of
+/// it. Reused from chunk to chunk by one thread.
 class TriangleOrder {
  public:
     static constexpr std::uint32_t kCacheSize = 16;
@@ -24,6 +26,7 @@ class TriangleOrder {
  private:
     void list_triangles(std::span<const std::uint16_t> indices, std::size_t vertex_count);
     void emit_around(std::uint16_t vertex, std::span<const std::uint16_t> indices);
+    std::size_t gather_fan(std::uint16_t vertex, std::span<const std::uint16_t> indices);
     std::uint16_t next_vertex(std::size_t vertex_count);
 
     static constexpr std::uint16_t kNone = 0xFFFF;
@@ -33,12 +36,20 @@ class TriangleOrder {
     template <std::size_t kSize>
     using Numbers = std::array<std::uint16_t, kSize>;
 
+    /// A triangle around a vertex, and the two vertices that follow that one.
+    struct Blade {
+        std::uint16_t triangle, first, last;
+        bool goes_on;  // from another one's last vertex
+    };
+
     Numbers<kMaxCorners + 1> first_;        // by vertex, where its triangles start in triangles_
     Numbers<kMaxCorners> triangles_;        // by vertex
     Numbers<kMaxCorners> left_;             // by vertex, its triangles that are not ordered yet
     Numbers<kMaxCorners> entered_;          // by vertex, when it entered the cache
     std::array<bool, kMaxTriangles> done_;  // by triangle
-    Numbers<kMaxCorners + 1> recent_;       // vertices used, the last one last
+    std::array<Blade, kMaxTriangles> fan_;  // around a vertex, those that were not done
+    Numbers<kMaxCorners> blades_;      // by vertex, which of the fan starts with it, if one does
+    Numbers<kMaxCorners + 1> recent_;  // vertices used, the last one last
     std::size_t recent_count_ = 0;
     std::size_t candidates_ = 0;  // where in recent_ those start that were used just now
     Numbers<kMaxTriangles> result_;

@@ -143,4 +143,26 @@ TEST(TriangleOrder, OfASheetUsesVerticesAgainWhileTheyAreCached) {
     EXPECT_LT(cache_misses(indices, ordered, bake::TriangleOrder::kCacheSize), 0.8);
 }
 
+/// Once round vertex 0, or half round, in any order and turned in any way.
+TEST(TriangleOrder, AroundAVertexTrianglesGoOnFromEachOther) {
+    std::mt19937 random(5);
+    bake::TriangleOrder order;
+    for (const std::uint16_t count : {5, 8}) {
+        std::vector<std::array<std::uint16_t, 3>> triangles;
+        for (std::uint16_t i = 0; i < count; ++i)
+            triangles.push_back({0, static_cast<std::uint16_t>(1 + i),
+                                 static_cast<std::uint16_t>(1 + (i + 1) % 8)});
+        std::shuffle(triangles.begin(), triangles.end(), random);
+        std::vector<std::uint16_t> indices;
+        for (auto triangle : triangles) {
+            std::rotate(triangle.begin(), triangle.begin() + random() % 3, triangle.end());
+            indices.insert(indices.end(), triangle.begin(), triangle.end());
+        }
+        // Vertex 0 is the first whose triangles are drawn.
+        const auto ordered = order.order(indices, 9);
+        for (std::size_t i = 1; i < count; ++i)
+            EXPECT_EQ(triangles[ordered[i]][1], triangles[ordered[i - 1]][2]);
+    }
+}
+
 }  // namespace

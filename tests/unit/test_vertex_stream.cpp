@@ -70,9 +70,20 @@ std::vector<VertexForms> all_forms() {
     return all;
 }
 
+std::vector<Neighbours> neighbours_of(const MeshRecord& mesh, const Indices& indices) {
+    std::vector<Neighbours> neighbours(mesh.vertex_count);
+    encode_indices(indices, neighbours);
+    return neighbours;
+}
+
+Bytes encoded(const MeshRecord& mesh, const Indices& indices, const Bytes& vertices) {
+    return encode_vertices(mesh, indices, neighbours_of(mesh, indices), vertices.data());
+}
+
 Bytes decoded(const MeshRecord& mesh, const Indices& indices, const Bytes& stream) {
     Bytes vertices(std::size_t{mesh.vertex_count} * vertex_layout(mesh.forms).stride);
-    EXPECT_TRUE(decode_vertices(mesh, indices, stream.data(), vertices.data()));
+    EXPECT_TRUE(decode_vertices(mesh, indices, neighbours_of(mesh, indices), stream.data(),
+                                vertices.data()));
     return vertices;
 }
 
@@ -83,7 +94,7 @@ TEST(VertexStream, AnyVerticesOfAnyFormComeBack) {
             const Bytes vertices = random_vertices(mesh);
             for (const Indices& indices :
                  {count < 400 ? Indices{} : sheet(), random_triangles(count, 700)}) {
-                const Bytes stream = encode_vertices(mesh, indices, vertices.data());
+                const Bytes stream = encoded(mesh, indices, vertices);
                 EXPECT_EQ(stream.size(), vertex_stream_bytes(mesh));
                 EXPECT_EQ(decoded(mesh, indices, stream), vertices);
             }
@@ -95,7 +106,7 @@ TEST(VertexStream, TheLargestMeshesComeBack) {
     const MeshRecord mesh{.vertex_count = kMaxMeshVertices};
     const Bytes vertices = random_vertices(mesh);
     const Indices indices = random_triangles(kMaxMeshVertices, 100'000);
-    EXPECT_EQ(decoded(mesh, indices, encode_vertices(mesh, indices, vertices.data())), vertices);
+    EXPECT_EQ(decoded(mesh, indices, encoded(mesh, indices, vertices)), vertices);
 }
 
 /// What one processor writes, every other reads.
@@ -125,98 +136,9 @@ TEST(VertexStream, ParallelogramsLeaveNothingToSay) {
             std::memcpy(&vertices[v * std::size_t{vertex_layout(mesh.forms).stride}], position,
                         sizeof position);
         }
-        const Bytes stream = encode_vertices(mesh, sheet(), vertices.data());
+        const Bytes stream = encoded(mesh, sheet(), vertices);
         const auto zeros = std::ranges::count(stream, std::byte{0});
         EXPECT_GT(zeros, static_cast<std::ptrdiff_t>(stream.size()) - 4 * kSide);
-    }
-}
-
-TEST(VertexStream, TrianglesMayStartAtAnyCorner) {
-    for (Indices indices : {sheet(), random_triangles(400, 700)}) {
-        const auto before = find_neighbours(indices, 400);
-        for (std::size_t i = 0; i < indices.size(); i += 3) {
-            const auto first = indices.begin() + static_cast<std::ptrdiff_t>(i);
-            std::rotate(first, first + 1 + i % 2, first + 3);
-        }
-        const auto after = find_neighbours(indices, 400);
-        for (std::size_t v = 0; v < before.size(); ++v) {
-            EXPECT_TRUE(before[v] == after[v]);
-        }
-    }
-}
-
-/// By docs/format.md, looking through all triangles.
-std::vector<Neighbours> searched(const Indices& indices, std::uint16_t count) {
-    std::vector<Neighbours> result;
-    for (std::uint16_t v = 0; v < count; ++v) {
-        const auto before = static_cast<std::uint16_t>(v > 0 ? v - 1 : 0);
-        result.push_back({before, before, before});
-    }
-    // The third vertex of the last triangle before `end` at x, if that also holds y.
-    const auto third = [&](std::size_t end, std::uint16_t x, std::uint16_t y) {
-        for (std::size_t i = end; i-- > 0;) {
-            if (indices[i] != x) continue;
-            const std::size_t first = i - i % 3;
-            const std::uint16_t p = indices[first + (i + 1) % 3];
-            const std::uint16_t q = indices[first + (i + 2) % 3];
-            return p == y ? int{q} : q == y ? int{p} : -1;
-        }
-        return -1;
-    };
-    int next = 0;
-    for (std::size_t i = 0; i < indices.size(); i += 3) {
-        for (int v = next; v < count; ++v) {
-            const auto first = indices.begin() + static_cast<std::ptrdiff_t>(i);
-            const auto at = std::find(first, first + 3, v);
-            if (at == first + 3) continue;
-            next = v + 1;
-            const std::uint16_t x = indices[i + static_cast<std::size_t>(at + 1 - first) % 3];
-            const std::uint16_t y = indices[i + static_cast<std::size_t>(at + 2 - first) % 3];
-            if (x < v && y < v) {
-                int c = third(i, x, y);
-                if (c < 0) c = third(i, y, x);
-                const bool across = c >= 0 && c < v;
-                result[static_cast<std::size_t>(v)] = {x, across ? y : x,
-                                                       across ? static_cast<std::uint16_t>(c) : x};
-            } else if (x < v || y < v) {
-                const std::uint16_t a = x < v ? x : y;
-                result[static_cast<std::size_t>(v)] = {a, a, a};
-            }
-        }
-    }
-    return result;
-}
-
-TEST(VertexStream, NeighboursAreThoseOfTheFormat) {
-    std::mt19937 random(17);
-    Indices shuffled = sheet();
-    for (std::size_t i = shuffled.size() / 3; i-- > 1;) {
-        const std::size_t other = random() % (i + 1);
-        std::swap_ranges(&shuffled[3 * i], &shuffled[3 * i] + 3, &shuffled[3 * other]);
-    }
-    // In the order of their first use, as bakes number them.
-    Indices numbers(400, 0xFFFF);
-    std::uint16_t used = 0;
-    Indices ordered = shuffled;
-    for (std::uint16_t& index : ordered) {
-        if (numbers[index] == 0xFFFF) numbers[index] = used++;
-        index = numbers[index];
-    }
-    for (const Indices& indices : {sheet(), shuffled, ordered, random_triangles(400, 700)}) {
-        const auto found = find_neighbours(indices, 400);
-        const auto expected = searched(indices, 400);
-        for (std::size_t v = 0; v < found.size(); ++v) {
-            EXPECT_TRUE(found[v] == expected[v]) << v;
-        }
-    }
-}
-
-TEST(VertexStream, NeighboursComeBefore) {
-    for (const Indices& indices : {sheet(), random_triangles(400, 700), Indices{}}) {
-        const auto neighbours = find_neighbours(indices, 400);
-        for (std::uint16_t v = 1; v < 400; ++v) {
-            EXPECT_LT(std::max({neighbours[v].a, neighbours[v].b, neighbours[v].c}), v);
-        }
     }
 }
 
@@ -232,7 +154,9 @@ TEST(VertexStream, AnyBytesBecomeVerticesOrAreRefused) {
             const bool in_digits = forms.frame <= FrameForm::quat32;
             const bool quantised = forms.position == PositionForm::quantised;
             const bool sound[] = {true, in_digits, in_digits && quantised, false};
-            EXPECT_EQ(decode_vertices(mesh, sheet(), stream.data(), vertices.data()), sound[i % 4]);
+            EXPECT_EQ(decode_vertices(mesh, sheet(), neighbours_of(mesh, sheet()), stream.data(),
+                                      vertices.data()),
+                      sound[i % 4]);
         }
     }
 }
@@ -262,7 +186,7 @@ TEST(VertexStream, FramesAreForeseen) {
             pack_frame(form, frame,
                        &vertices[v * std::size_t{layout.stride} + layout.frame_offset]);
         }
-        const Bytes stream = encode_vertices(mesh, indices, vertices.data());
+        const Bytes stream = encoded(mesh, indices, vertices);
         EXPECT_EQ(stream[0], std::byte(FrameModel::x_tangent_of_positions));
         // The digits differ by one or two from what is expected.
         const auto digits = std::span(stream).last(std::size_t{6} * mesh.vertex_count);
