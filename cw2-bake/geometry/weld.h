@@ -24,7 +24,7 @@ struct FramedTriangles {
 };
 
 /// Corners share a vertex where they are equal in position, normal, UV and material. Of equal
-/// attributes a vertex has the first one; a missing UV is 0. Every corner has a normal; `positions`
+/// positions a vertex has the first one; a missing UV is 0. Every corner has a normal; `positions`
 /// tells which of the scene's are equal. The scene's corners go: what is made of them takes the
 /// place of their memory, bit by bit.
 FramedTriangles weld(SourceScene& scene, const FirstEqual& positions,

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
 #include <array>
 #include <map>
 #include <random>
@@ -87,7 +86,7 @@ TEST(Weld, MakesOneVertexOfCornersThatAreEqualInValueAndMaterial) {
     }
 }
 
-TEST(Weld, TakesTheFirstElementOfEachValueWhateverTheNumberOfThreads) {
+TEST(Weld, TakesTheFirstPositionOfEachValueWhateverTheNumberOfThreads) {
     std::mt19937 random(2);
     // Enough positions for several tasks.
     const SourceScene scene = random_scene(random, 30'000, 70'000, 90);
@@ -102,12 +101,6 @@ TEST(Weld, TakesTheFirstElementOfEachValueWhateverTheNumberOfThreads) {
         for (std::size_t i = 0; i < scene.corners.size(); ++i) {
             const glm::vec3& p = scene.positions[scene.corners[i].position];
             ASSERT_EQ(welded.corner(i).position, first.at({p.x, p.y, p.z})) << threads;
-            const auto first_of = [](const auto& all, std::uint32_t index) {
-                return std::find(all.begin(), all.end(), all[index]) - all.begin();
-            };
-            ASSERT_EQ(welded.corner(i).normal,
-                      first_of(welded.scene.normals, welded.corner(i).normal));
-            ASSERT_EQ(welded.corner(i).uv, first_of(welded.scene.uvs, welded.corner(i).uv));
         }
     }
 }
@@ -120,12 +113,13 @@ TEST(Weld, TreatsAMissingUvAsZero) {
     scene.corners = {{0, 0, 1}, {1, 0, kAbsent}, {2, 0, 0}};
     scene.triangle_material.push_back(0);
     scene.materials.resize(1);
-    EXPECT_EQ(Welded(scene).corner(1).uv, 1u);
-    scene.uvs = {{1, 1}};
-    scene.corners = {{0, 0, 0}, {1, 0, kAbsent}, {2, 0, kAbsent}};
     const Welded welded(scene);
+    EXPECT_EQ(welded.scene.uvs[welded.corner(0).uv], glm::vec2(0, 0));
     EXPECT_EQ(welded.scene.uvs[welded.corner(1).uv], glm::vec2(0, 0));
-    EXPECT_EQ(welded.corner(1).uv, welded.corner(2).uv);
+    EXPECT_EQ(welded.scene.uvs[welded.corner(2).uv], glm::vec2(1, 1));
+    // Stated and missing ones at one place are one vertex.
+    scene.corners[2] = {0, 0, kAbsent};
+    EXPECT_EQ(Welded(scene).triangles.vertices.size(), 2u);
 }
 
 TEST(RunVector, HoldsWhatAVectorHolds) {
