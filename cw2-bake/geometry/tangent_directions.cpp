@@ -1,7 +1,5 @@
 #include "cw2-bake/geometry/tangent_directions.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
@@ -15,8 +13,6 @@ namespace {
 
 using glm::vec2;
 using glm::vec3;
-
-constexpr std::size_t kFacesPerBlock = 8192;
 
 /// (asin(sqrt(z)) / sqrt(z) - 1) / z for z in [0, 1/4], highest power first; Chebyshev fit, off by
 /// less than 1e-12.
@@ -112,7 +108,10 @@ struct FaceLanes {
             t.x[i] = scale_t * tx;
             t.y[i] = scale_t * ty;
             t.z[i] = scale_t * tz;
-            const bool spans = has_area && length_s / size > FLT_MIN && length_t / size > FLT_MIN;
+            // length / size > FLT_MIN, without divisions, which this loop has too many of.
+            constexpr float kUp = 0x1p64f, kDown = 0x1p-62f;
+            const bool spans =
+                has_area && length_s * kUp > size * kDown && length_t * kUp > size * kDown;
             usable[i] = spans ? 1 : 0;
             preserving[i] = area > 0.0f ? 1 : 0;
         }
@@ -171,10 +170,6 @@ struct CornerLanes {
     }
 };
 
-CW2_EVERY_CPU void compute(FaceLanes& faces) {
-    faces.compute();
-}
-
 CW2_EVERY_CPU void compute(CornerLanes& corners, SpokeLanes& spokes) {
     corners.compute(spokes);
 }
@@ -190,27 +185,6 @@ void Spokes::make(const SourceScene& scene, const FramedTriangles& triangles,
         for (std::size_t i = 0; i < count; ++i) batch.load(i, scene, triangles, slots[begin + i]);
         compute(batch, lanes_[begin / kLanes]);
     }
-}
-
-std::vector<std::uint32_t> find_unusable_faces(const SourceScene& scene,
-                                               const FramedTriangles& triangles) {
-    const std::size_t face_count = triangles.indices.size() / 3;
-    std::vector<std::vector<std::uint32_t>> found(face_count / kFacesPerBlock + 1);
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t block) {
-        const std::size_t end = std::min(face_count, (block + 1) * kFacesPerBlock);
-        FaceLanes lanes{};
-        for (std::size_t begin = block * kFacesPerBlock; begin < end; begin += kLanes) {
-            const std::size_t count = std::min(kLanes, end - begin);
-            for (std::size_t i = 0; i < count; ++i) lanes.load(i, scene, triangles, begin + i);
-            compute(lanes);
-            for (std::size_t i = 0; i < count; ++i)
-                if (lanes.usable[i] == 0)
-                    found[block].push_back(static_cast<std::uint32_t>(begin + i));
-        }
-    });
-    std::vector<std::uint32_t> faces;
-    for (const auto& part : found) faces.insert(faces.end(), part.begin(), part.end());
-    return faces;
 }
 
 }  // namespace bake

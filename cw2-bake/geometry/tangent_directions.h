@@ -61,8 +61,4 @@ class Spokes {
     std::vector<SpokeLanes> lanes_;
 };
 
-/// The faces whose UVs span no area, ascending.
-std::vector<std::uint32_t> find_unusable_faces(const SourceScene& scene,
-                                               const FramedTriangles& triangles);
-
 }  // namespace bake

@@ -4,9 +4,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "cw2-bake/geometry/tangent_directions.h"
@@ -22,6 +24,10 @@ using glm::vec4;
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 constexpr vec4 kUnreached{1.0f, 0.0f, 0.0f, -1.0f};
 constexpr std::uint32_t kVerticesPerBlock = 256;
+
+std::size_t block_count(std::size_t vertices) {
+    return (vertices + kVerticesPerBlock - 1) / kVerticesPerBlock;
+}
 
 bool is_unit(const vec3& v) {
     return std::abs(glm::dot(v, v) - 1.0f) < 1e-3f;
@@ -49,26 +55,38 @@ struct Splits {
     std::vector<Moved> moved;
 };
 
+/// What a block of vertices leaves to be done.
+struct Rest {
+    Splits splits;
+    /// Vertices that got no tangent yet: faces with usable UVs meet faces without there.
+    std::vector<std::uint32_t> mixed;
+};
+
 /// Gives some vertices their tangents; reused for one block of vertices after another.
 class TangentBlock {
  public:
-    TangentBlock(const SourceScene& scene, const CornerLists& lists, const Windings& windings,
-                 FramedTriangles& triangles)
-        : scene_(scene), lists_(lists), windings_(windings), triangles_(triangles) {}
+    TangentBlock(const SourceScene& scene, const CornerLists& lists, FramedTriangles& triangles)
+        : scene_(scene), lists_(lists), triangles_(triangles) {}
 
-    /// The vertices begin .. end; returns those that they split into.
-    Splits make(std::uint32_t begin, std::uint32_t end) {
-        vertices_.resize(end - begin);
-        std::iota(vertices_.begin(), vertices_.end(), begin);
-        slots_.assign(triangles_, lists_, vertices_);
+    /// Without `windings` the mixed vertices are left out.
+    Rest make(std::span<const std::uint32_t> vertices, const Windings* windings = nullptr) {
+        slots_.assign(triangles_, lists_, vertices);
         const std::size_t count = slots_.slots.size();
         spokes_.make(scene_, triangles_, slots_.slots);
         group_.resize(count);
         tangents_.resize(count);
         for (const VertexSlots& vertex : slots_.vertices) {
-            if (!make_plain_vertex(vertex)) make_vertex(vertex);
+            if (make_plain_vertex(vertex)) continue;
+            if (is_mixed(vertex)) {
+                if (!windings) {
+                    rest_.mixed.push_back(slots_.slots[vertex.first].own);
+                    continue;
+                }
+                settle_windings(vertex, *windings);
+            }
+            make_vertex(vertex);
         }
-        return std::move(splits_);
+        return std::exchange(rest_, {});
     }
 
  private:
@@ -107,16 +125,26 @@ class TangentBlock {
         return true;
     }
 
+    bool is_mixed(const VertexSlots& vertex) const {
+        std::uint32_t usable = 0;
+        for (std::uint32_t slot = vertex.first; slot < vertex.degenerate; ++slot)
+            usable += spokes_.usable(slot);
+        return usable != 0 && usable != vertex.degenerate - vertex.first;
+    }
+
+    void settle_windings(const VertexSlots& vertex, const Windings& windings) {
+        for (std::uint32_t slot = vertex.first; slot < vertex.degenerate; ++slot) {
+            if (!spokes_.usable(slot))
+                spokes_.set_preserving(
+                    slot, windings.preserving(slots_.slots[slot].face, spokes_.preserving(slot)));
+        }
+    }
+
     void make_vertex(const VertexSlots& vertex) {
         const std::uint32_t begin = vertex.first;
         const std::uint32_t end = vertex.degenerate;
         std::fill(tangents_.begin() + begin, tangents_.begin() + vertex.end, kUnreached);
         std::fill(group_.begin() + begin, group_.begin() + vertex.end, kNone);
-        for (std::uint32_t slot = begin; slot < end; ++slot) {
-            if (!spokes_.usable(slot))
-                spokes_.set_preserving(
-                    slot, windings_.preserving(slots_.slots[slot].face, spokes_.preserving(slot)));
-        }
         find_groups(vertex);
         sum_groups(begin, end);
         for (std::uint32_t slot = begin; slot < end; ++slot)
@@ -210,31 +238,30 @@ class TangentBlock {
         FramedVertex& kept = triangles_.vertices[own];
         kept.tangent = tangents_[vertex.first];
         if (colored) triangles_.colors[own] = color_of(vertex.first);
-        const std::size_t first = splits_.vertices.size();
+        Splits& splits = rest_.splits;
+        const std::size_t first = splits.vertices.size();
         for (std::uint32_t slot = vertex.first + 1; slot < vertex.end; ++slot) {
             const std::uint32_t color = colored ? color_of(slot) : 0;
             if (kept.tangent == tangents_[slot] && (!colored || triangles_.colors[own] == color))
                 continue;
             std::size_t v = first;
-            while (v < splits_.vertices.size() && (splits_.vertices[v].tangent != tangents_[slot] ||
-                                                   (colored && splits_.colors[v] != color)))
+            while (v < splits.vertices.size() && (splits.vertices[v].tangent != tangents_[slot] ||
+                                                  (colored && splits.colors[v] != color)))
                 ++v;
-            if (v == splits_.vertices.size()) {
-                splits_.vertices.push_back({kept.corner, tangents_[slot]});
-                if (colored) splits_.colors.push_back(color);
+            if (v == splits.vertices.size()) {
+                splits.vertices.push_back({kept.corner, tangents_[slot]});
+                if (colored) splits.colors.push_back(color);
             }
-            splits_.moved.push_back({slots_.slots[slot].corner, static_cast<std::uint32_t>(v)});
+            splits.moved.push_back({slots_.slots[slot].corner, static_cast<std::uint32_t>(v)});
         }
     }
 
     const SourceScene& scene_;
     const CornerLists& lists_;
-    const Windings& windings_;
     FramedTriangles& triangles_;
-    std::vector<std::uint32_t> vertices_;
     CornerSlots slots_;
     SlotLinks links_;
-    Splits splits_;
+    Rest rest_;
     // Of each slot:
     Spokes spokes_;
     std::vector<std::uint32_t> group_;  // kNone if none reached it
@@ -245,8 +272,9 @@ class TangentBlock {
 };
 
 /// The new vertices come in the order of the blocks.
-void add_splits(std::vector<Splits>& all, FramedTriangles& triangles) {
-    for (Splits& splits : all) {
+void add_splits(std::vector<Rest>& rests, FramedTriangles& triangles) {
+    for (Rest& rest : rests) {
+        Splits& splits = rest.splits;
         const auto first = static_cast<std::uint32_t>(triangles.vertices.size());
         triangles.vertices.insert(triangles.vertices.end(), splits.vertices.begin(),
                                   splits.vertices.end());
@@ -261,22 +289,35 @@ void add_splits(std::vector<Splits>& all, FramedTriangles& triangles) {
 
 void add_tangents(const SourceScene& scene, FramedTriangles& triangles, const Advance& advance) {
     if (!scene.colors.empty()) triangles.colors.resize(triangles.vertices.size());
-    std::vector<Splits> splits;
+    const auto count = static_cast<std::uint32_t>(triangles.vertices.size());
+    std::vector<Rest> rests(block_count(count));
+    std::vector<Rest> rests_of_mixed;
     {
         const CornerLists lists = list_corners(triangles);
-        const Windings windings(scene, triangles, lists);
         tbb::enumerable_thread_specific<TangentBlock> blocks(
-            [&] { return TangentBlock(scene, lists, windings, triangles); });
-        const auto count = static_cast<std::uint32_t>(triangles.vertices.size());
-        splits.resize((std::size_t{count} + kVerticesPerBlock - 1) / kVerticesPerBlock);
-        tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t i) {
+            [&] { return TangentBlock(scene, lists, triangles); });
+        tbb::parallel_for(std::size_t{0}, rests.size(), [&](std::size_t i) {
+            std::array<std::uint32_t, kVerticesPerBlock> vertices;
             const auto begin = static_cast<std::uint32_t>(i) * kVerticesPerBlock;
-            splits[i] =
-                blocks.local().make(begin, begin + std::min(kVerticesPerBlock, count - begin));
-            advance(1.0 / static_cast<double>(splits.size()));
+            const std::uint32_t size = std::min(kVerticesPerBlock, count - begin);
+            std::iota(vertices.begin(), vertices.begin() + size, begin);
+            rests[i] = blocks.local().make(std::span(vertices).first(size));
+            advance(1.0 / static_cast<double>(rests.size()));
+        });
+        std::vector<std::uint32_t> mixed;
+        for (const Rest& rest : rests)
+            mixed.insert(mixed.end(), rest.mixed.begin(), rest.mixed.end());
+        const Windings windings(scene, triangles, lists, mixed);
+        rests_of_mixed.resize(block_count(mixed.size()));
+        tbb::parallel_for(std::size_t{0}, rests_of_mixed.size(), [&](std::size_t i) {
+            const std::size_t begin = i * kVerticesPerBlock;
+            const std::size_t size = std::min<std::size_t>(kVerticesPerBlock, mixed.size() - begin);
+            rests_of_mixed[i] =
+                blocks.local().make(std::span(mixed).subspan(begin, size), &windings);
         });
     }
-    add_splits(splits, triangles);
+    add_splits(rests, triangles);
+    add_splits(rests_of_mixed, triangles);
 }
 
 }  // namespace bake

@@ -3,37 +3,18 @@
 #include <algorithm>
 
 namespace bake {
-namespace {
-
-/// The vertices where both kinds of faces meet: nothing passes from face to face elsewhere.
-void keep_mixed_vertices(CornerSlots& slots, const Spokes& spokes) {
-    std::erase_if(slots.vertices, [&](const VertexSlots& vertex) {
-        std::uint32_t usable = 0;
-        for (std::uint32_t slot = vertex.first; slot < vertex.degenerate; ++slot)
-            usable += spokes.usable(slot);
-        return usable == 0 || usable == vertex.degenerate - vertex.first;
-    });
-}
-
-}  // namespace
 
 Windings::Windings(const SourceScene& scene, const FramedTriangles& triangles,
-                   const CornerLists& lists)
-    : unusable_(find_unusable_faces(scene, triangles)), preserving_(unusable_.size(), -1) {
-    if (unusable_.empty() || unusable_.size() == triangles.indices.size() / 3) return;
-    std::vector<std::uint32_t> vertices;
-    for (const std::uint32_t face : unusable_) {
-        for (std::size_t c = 0; c < 3; ++c)
-            vertices.push_back(triangles.indices[3 * std::size_t{face} + c]);
-    }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-
+                   const CornerLists& lists, std::span<const std::uint32_t> mixed) {
     CornerSlots slots;
-    slots.assign(triangles, lists, vertices);
+    slots.assign(triangles, lists, mixed);
     Spokes spokes;
     spokes.make(scene, triangles, slots.slots);
-    keep_mixed_vertices(slots, spokes);
+    for (std::uint32_t slot = 0; slot < slots.slots.size(); ++slot)
+        if (!spokes.usable(slot)) unusable_.push_back(slots.slots[slot].face);
+    std::ranges::sort(unusable_);
+    unusable_.erase(std::unique(unusable_.begin(), unusable_.end()), unusable_.end());
+    preserving_.assign(unusable_.size(), -1);
     SlotLinks links;
     for (const VertexSlots& vertex : slots.vertices) links.link(slots, vertex);
     grow_groups(slots, links, spokes);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "cw2-bake/base/source_scene.h"
@@ -14,10 +15,13 @@ namespace bake {
 /// corner; groups grow one after the other, in the order of their first corner.
 class Windings {
  public:
-    Windings(const SourceScene& scene, const FramedTriangles& triangles, const CornerLists& lists);
+    /// `mixed` are the vertices, ascending, where faces with usable UVs meet faces without: nothing
+    /// passes from face to face elsewhere.
+    Windings(const SourceScene& scene, const FramedTriangles& triangles, const CornerLists& lists,
+             std::span<const std::uint32_t> mixed);
 
-    /// Whether the UVs of such a face wind as its positions do; `otherwise` where no group reaches
-    /// it.
+    /// Whether the UVs of such a face, which is at one of those vertices, wind as its positions do;
+    /// `otherwise` where no group reaches it.
     bool preserving(std::uint32_t face, bool otherwise) const;
 
  private:
