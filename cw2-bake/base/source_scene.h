@@ -2,6 +2,7 @@
 // stages consume. Knows no parser.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec2.hpp>
@@ -88,6 +89,11 @@ struct SourceLight {
     glm::vec3 color;  ///< linear; the light has no falloff
 };
 
+/// The triangles begin .. end.
+struct TriangleRange {
+    std::size_t begin, end;
+};
+
 /// Triangles over shared attribute arrays. Right-handed, +Y up; v = 0 is the bottom row of an
 /// image. Every number is finite, every index in range, there is at least one triangle, and no
 /// component is -0 (so that equality of bits is equality of values).
@@ -102,6 +108,8 @@ struct SourceScene {
     RunVector triangle_material;  ///< one a triangle, index into materials
     /// One a triangle, 0 = not smoothed; empty if every corner has a normal.
     RunVector smoothing_group;
+    /// Where corners without a normal are, ascending: outside of these every corner has one.
+    std::vector<TriangleRange> without_normals;
     /// One a corner as tangents.h describes them, or zero where the source gives none; empty if it
     /// gives none at all.
     std::vector<glm::vec4> tangents;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <span>
 
+#include "common/every_cpu.h"
 #include "common/io.h"
 
 namespace bake {
@@ -68,7 +69,7 @@ std::string take_statement(std::string_view text, std::size_t& offset) {
 namespace {
 
 /// How often `c` is in `text`. Counts in bytes, of which compilers make vectors.
-std::size_t count_of(std::string_view text, char c) {
+CW2_EVERY_CPU std::size_t count_of(std::string_view text, char c) {
     constexpr std::size_t kLanes = 32;
     constexpr std::size_t kMostRows = 255;
     std::size_t count = 0;
@@ -98,7 +99,12 @@ std::size_t line_number(std::string_view text, std::size_t offset) {
 }
 
 std::size_t LineCounter::at(std::size_t offset) {
-    if (offset < offset_) *this = LineCounter(text_, is_mapped_);
+    const auto behind = std::ranges::upper_bound(counted_, offset, {}, &Counted::offset);
+    const Counted start = behind == counted_.begin() ? Counted{0, 1} : behind[-1];
+    if (offset < offset_ || start.offset > offset_) {
+        offset_ = start.offset;
+        line_ = start.line;
+    }
     constexpr std::size_t kBlock = 1 << 20;
     const std::size_t end = std::min(offset, text_.size());
     const auto count = [&](const tbb::blocked_range<std::size_t>& part, std::size_t lines) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace bake {
 
@@ -51,12 +52,24 @@ class LineCounter {
     explicit LineCounter(std::string_view text, bool is_mapped = false)
         : text_(text), is_mapped_(is_mapped) {}
 
+    /// Some lines behind those known so far, the next of which starts at `offset`, need not be
+    /// counted again.
+    void add_counted(std::size_t lines, std::size_t offset) {
+        counted_.push_back({offset, (counted_.empty() ? 1 : counted_.back().line) + lines});
+    }
+
     /// As line_number() tells it.
     std::size_t at(std::size_t offset);
 
  private:
+    struct Counted {
+        std::size_t offset;
+        std::size_t line;  // that starts there
+    };
+
     std::string_view text_;
     bool is_mapped_;
+    std::vector<Counted> counted_;
     std::size_t offset_ = 0;
     std::size_t line_ = 1;  // that holds text_[offset_]
 };

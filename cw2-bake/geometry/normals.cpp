@@ -1,6 +1,7 @@
 #include "cw2-bake/geometry/normals.h"
 
 #include <malloc.h>
+#include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
@@ -56,37 +57,59 @@ double angle_at(const Triangle& p, std::size_t corner) {
 constexpr std::size_t kCornersPerBlock = 3 << 14;
 constexpr std::size_t kCornersPerRound = 1 << 22;
 
-/// Corners without a normal, told in blocks of corners.
-struct Missing {
-    std::vector<char> in_block;     ///< whether some corner of the block has none
-    std::vector<char> at_position;  ///< whether some corner there has none; by the first position
-};
-
-template <typename Visit>
-void for_each_block(const SourceScene& scene, const Visit& visit) {
-    const std::size_t count = scene.corners.size();
-    tbb::parallel_for(std::size_t{0}, (count + kCornersPerBlock - 1) / kCornersPerBlock,
-                      [&](std::size_t block) {
-                          const std::size_t begin = block * kCornersPerBlock;
-                          visit(block, begin, std::min(begin + kCornersPerBlock, count));
-                      });
-}
-
-Missing find_missing(const SourceScene& scene, const FirstEqual& positions) {
-    Missing missing;
-    missing.in_block.resize(scene.corners.size() / kCornersPerBlock + 1);
-    missing.at_position.resize(scene.positions.size());
-    for_each_block(scene, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Corner& corner = scene.corners[i];
-            if (corner.normal != kAbsent) continue;
-            missing.in_block[block] = true;
-            std::atomic_ref(missing.at_position[positions[corner.position]])
-                .store(true, std::memory_order_relaxed);
+/// The positions where some corner has no normal.
+class Lacking {
+ public:
+    Lacking(const SourceScene& scene, const FirstEqual& positions)
+        : is_lacking_(scene.positions.size()) {
+        for (const TriangleRange& range : scene.without_normals) {
+            tbb::parallel_for(
+                tbb::blocked_range<std::size_t>(3 * range.begin, 3 * range.end, kCornersPerBlock),
+                [&](const auto& block) {
+                    for (std::size_t i = block.begin(); i < block.end(); ++i) {
+                        const Corner& corner = scene.corners[i];
+                        if (corner.normal != kAbsent) continue;
+                        std::atomic_ref(is_lacking_[positions[corner.position]])
+                            .store(true, std::memory_order_relaxed);
+                    }
+                });
         }
-    });
-    return missing;
-}
+        count_ = static_cast<std::size_t>(std::ranges::count(is_lacking_, true));
+        // Of equal positions the first was marked.
+        for (std::uint32_t p = 0; !positions.all_differ() && p < is_lacking_.size(); ++p)
+            is_lacking_[p] = is_lacking_[positions[p]];
+        const auto first = std::ranges::find(is_lacking_, true);
+        const auto behind = std::find(is_lacking_.rbegin(), is_lacking_.rend(), true).base();
+        if (first == is_lacking_.end()) return;
+        first_ = static_cast<std::uint32_t>(first - is_lacking_.begin());
+        span_ = static_cast<std::uint32_t>(behind - first);
+    }
+
+    /// Equal ones count once.
+    std::size_t count() const { return count_; }
+
+    /// Calls visit(i) for the corners i of begin .. end - 1, whole triangles, that lie there.
+    template <typename Visit>
+    void for_each_there(const std::vector<Corner>& corners, std::size_t begin, std::size_t end,
+                        const Visit& visit) const {
+        // Where they are few, one comparison tells of most corners.
+        const auto may_be_there = [first = first_, span = span_](const Corner& corner) {
+            return corner.position - first < span;
+        };
+        for (; begin < end; begin += 3) {
+            const Corner* const corner = &corners[begin];
+            if (!(may_be_there(corner[0]) | may_be_there(corner[1]) | may_be_there(corner[2])))
+                continue;
+            for (std::size_t k = 0; k < 3; ++k)
+                if (is_lacking_[corner[k].position]) visit(begin + k);
+        }
+    }
+
+ private:
+    std::vector<char> is_lacking_;  // by position
+    std::size_t count_ = 0;
+    std::uint32_t first_ = 0, span_ = 0;  // all are among these
+};
 
 /// Makes the normals at some positions; one task's.
 class SmoothNormals {
@@ -102,8 +125,12 @@ class SmoothNormals {
         made_.clear();
         last_.clear();
         settled_ = 0;
-        for (std::uint32_t p = 0; p < end - begin; ++p)
-            make_at(p == 0 ? 0 : next_[p - 1], next_[p]);
+        std::uint32_t first = 0;
+        for (std::uint32_t p = 0; p < end - begin; ++p) {
+            const std::uint32_t last = next_[p];
+            if (last != first) make_at(first, last);
+            first = last;
+        }
     }
 
     /// Puts the normals behind those of the scene, and tells the corners.
@@ -183,8 +210,8 @@ class SmoothNormals {
 };
 
 /// Positions are taken in a few rounds, so that no list of all corners is ever whole.
-void make_smooth(const Missing& missing, const FirstEqual& positions, SourceScene& scene,
-                 const Advance& advance) {
+void make_smooth(const FirstEqual& positions, SourceScene& scene, const Advance& advance) {
+    const Lacking lacking(scene, positions);
     constexpr std::size_t kMostRounds = 12;
     const std::size_t rounds = std::min(scene.corners.size() / kCornersPerRound + 1, kMostRounds);
     const std::size_t tasks =
@@ -194,19 +221,20 @@ void make_smooth(const Missing& missing, const FirstEqual& positions, SourceScen
                                           (round * tasks + task) / (rounds * tasks));
     };
     // Exact where each position has one smoothing group.
-    scene.normals.reserve(scene.normals.size() +
-                          static_cast<std::size_t>(std::ranges::count(missing.at_position, true)));
+    scene.normals.reserve(scene.normals.size() + lacking.count());
     std::vector<SmoothNormals> makers(tasks, SmoothNormals(scene, positions));
     for (std::size_t round = 0; round < rounds; ++round) {
         const std::uint32_t begin = first_position(round, 0);
         const std::uint32_t size = first_position(round + 1, 0) - begin;
-        std::vector<std::vector<std::uint32_t>> corners(missing.in_block.size());
-        for_each_block(scene, [&](std::size_t block, std::size_t first, std::size_t end) {
-            for (std::size_t i = first; i < end; ++i) {
-                const std::uint32_t position = positions[scene.corners[i].position];
-                if (position - begin < size && missing.at_position[position])
+        std::vector<std::vector<std::uint32_t>> corners(scene.corners.size() / kCornersPerBlock +
+                                                        1);
+        tbb::parallel_for(std::size_t{0}, corners.size(), [&](std::size_t block) {
+            const std::size_t first = block * kCornersPerBlock;
+            const std::size_t end = std::min(first + kCornersPerBlock, scene.corners.size());
+            lacking.for_each_there(scene.corners, first, end, [&](std::size_t i) {
+                if (positions[scene.corners[i].position] - begin < size)
                     corners[block].push_back(static_cast<std::uint32_t>(i));
-            }
+            });
         });
         tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
             makers[task].make(first_position(round, task), first_position(round, task + 1),
@@ -242,13 +270,10 @@ class FlatNormals {
     glm::dvec3 normal_{0.0};
 };
 
-void make_flat(const Missing& missing, SourceScene& scene) {
+void make_flat(SourceScene& scene) {
     FlatNormals flat(scene);
-    for (std::size_t block = 0; block < missing.in_block.size(); ++block) {
-        if (!missing.in_block[block]) continue;
-        const std::size_t begin = block * kCornersPerBlock;
-        const std::size_t end = std::min(begin + kCornersPerBlock, scene.corners.size());
-        for (std::size_t i = begin; i < end; ++i)
+    for (const TriangleRange& range : scene.without_normals) {
+        for (std::size_t i = 3 * range.begin; i < 3 * range.end; ++i)
             if (scene.corners[i].normal == kAbsent) scene.corners[i].normal = flat.index(i / 3);
     }
 }
@@ -257,13 +282,12 @@ void make_flat(const Missing& missing, SourceScene& scene) {
 
 void generate_normals(SourceScene& scene, const FirstEqual& positions, const Advance& advance) {
     if (scene.smoothing_group.empty()) return;  // every corner has one
-    const Missing missing = find_missing(scene, positions);
     const auto is_smooth = [](const RunVector::Run& run) { return run.number != 0; };
     if (std::ranges::any_of(scene.smoothing_group.runs(), is_smooth))
-        make_smooth(missing, positions, scene, advance);
+        make_smooth(positions, scene, advance);
     // The lists were many and of all sizes.
     if (scene.corners.size() > kCornersPerRound) malloc_trim(0);
-    make_flat(missing, scene);
+    make_flat(scene);
 }
 
 }  // namespace bake

@@ -385,7 +385,10 @@ void GltfPrimitives::add_primitive(int node_index, const tinygltf::Primitive& pr
     for (const std::uint32_t i : indices) new_index_[i] = kUnused;
     if (!scene_.tangents.empty()) scene_.tangents.resize(scene_.corners.size(), glm::vec4(0.0f));
     if (!scene_.colors.empty()) scene_.colors.resize(scene_.corners.size(), kWhite);
-    if (some_without_normals_) scene_.smoothing_group.extend(scene_.triangle_material.size(), 0);
+    if (some_without_normals_) {
+        scene_.smoothing_group.extend(scene_.triangle_material.size(), 0);
+        scene_.without_normals = {{0, scene_.triangle_material.size()}};
+    }
 }
 
 void GltfPrimitives::add_node(int node) {

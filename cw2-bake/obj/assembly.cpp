@@ -10,6 +10,7 @@
 #include <exception>
 #include <span>
 #include <unordered_map>
+#include <utility>
 
 #include "common/io.h"
 #include "cw2-bake/base/diagnostics.h"
@@ -63,6 +64,21 @@ ObjCounts counts_of(const SourceScene& scene) {
     return {count32(scene.positions), count32(scene.uvs), count32(scene.normals)};
 }
 
+/// Ranges that touch become one.
+void add_range(std::vector<TriangleRange>& ranges, TriangleRange range) {
+    if (!ranges.empty() && ranges.back().end >= range.begin)
+        ranges.back().end = std::max(ranges.back().end, range.end);
+    else
+        ranges.push_back(range);
+}
+
+void add_ranges(std::vector<TriangleRange>& ranges, const std::vector<TriangleRange>& more) {
+    std::vector<TriangleRange> all = std::exchange(ranges, {});
+    all.insert(all.end(), more.begin(), more.end());
+    std::ranges::sort(all, {}, &TriangleRange::begin);
+    for (const TriangleRange& range : all) add_range(ranges, range);
+}
+
 /// Takes the chunks in the order of the text.
 class Assembly {
  public:
@@ -79,6 +95,9 @@ class Assembly {
     void append_colors(const ObjChunk& chunk, std::size_t first_position);
     void append_materials(const ObjChunk& chunk);
     void append_notes(ObjChunk& chunk, std::size_t text_bytes_left);
+    template <typename T>
+    void add_bad(ObjAttribute attribute, bool some_are_bad, const std::vector<T>& elements,
+                 std::size_t first);
     bool resolve(ObjChunk& chunk) const;
     std::uint32_t material_in_use();
     bool is_good(ObjAttribute attribute) const;
@@ -108,8 +127,8 @@ class Assembly {
     VertexColors colors_;
     std::vector<ObjNote> notes_;
     bool has_invalid_ = false;
-    bool has_zero_normal_ = false;
     std::array<std::optional<ObjError>, 3> bad_element_;
+    std::array<std::vector<std::uint32_t>, 3> bad_;  // elements that are NaN, ascending
 };
 
 /// The chunk's relative indices become indices from 0, or kObjInvalid. False if some do.
@@ -137,9 +156,12 @@ void Assembly::append_chunk(ObjChunk& chunk, std::size_t begin, std::size_t end)
     if (chunk.error) throw_at(text_, name_, *chunk.error);
     const SourceScene& scene = contents_.scene;
     pieces_.push_back({begin, scene.corners.size() / 3, counts_of(scene)});
+    contents_.lines.add_counted(chunk.line_count, end);
     const std::size_t text_bytes_left = text_.size() - end;
     has_invalid_ |= chunk.has_invalid;
-    has_zero_normal_ |= chunk.has_zero_normal;
+    add_bad(kObjUv, chunk.bad_element[kObjUv].has_value(), chunk.uvs, scene.uvs.size());
+    add_bad(kObjNormal, chunk.bad_element[kObjNormal] || chunk.has_zero_normal, chunk.normals,
+            scene.normals.size());
     if (chunk.has_relative && !resolve(chunk)) has_invalid_ = true;
     append_materials(chunk);
     append_notes(chunk, text_bytes_left);
@@ -161,6 +183,15 @@ void Assembly::append_arrays(const ObjChunk& chunk, std::size_t text_bytes_left)
     for (std::size_t i = 0; i < max_index_.size(); ++i) {
         max_index_[i] = std::max(max_index_[i], chunk.max_index[i]);
     }
+}
+
+/// Of a chunk's elements, which start at `first`.
+template <typename T>
+void Assembly::add_bad(ObjAttribute attribute, bool some_are_bad, const std::vector<T>& elements,
+                       std::size_t first) {
+    for (std::size_t i = 0; some_are_bad && i < elements.size(); ++i)
+        if (std::isnan(elements[i].x))
+            bad_[attribute].push_back(static_cast<std::uint32_t>(first + i));
 }
 
 void Assembly::append_colors(const ObjChunk& chunk, std::size_t first_position) {
@@ -216,13 +247,14 @@ void Assembly::append_notes(ObjChunk& chunk, std::size_t text_bytes_left) {
     }
     auto& libraries = contents_.libraries;
     libraries.insert(libraries.end(), chunk.libraries.begin(), chunk.libraries.end());
-    contents_.lacks_normals |= chunk.lacks_normals;
+    if (chunk.lacks_normals)
+        add_range(contents_.scene.without_normals,
+                  {first_triangle, first_triangle + chunk.triangles.size()});
 }
 
 /// Whether all elements are numbers, all normals have a length, and all indices in range.
 bool Assembly::is_good(ObjAttribute attribute) const {
-    return !has_invalid_ && !bad_element_[attribute] &&
-           !(attribute == kObjNormal && has_zero_normal_) &&
+    return !has_invalid_ && bad_[attribute].empty() &&
            max_index_[attribute] <= counts_of(contents_.scene)[attribute];
 }
 
@@ -278,21 +310,35 @@ void Assembly::mend(ObjAttribute attribute, std::uint32_t Corner::*index,
                     std::vector<T>& elements) {
     struct Missing {
         std::size_t count = 0, first_triangle = 0;
+        std::vector<TriangleRange> ranges{};
     };
     const auto& polygons = contents_.polygons;
     auto& corners = contents_.scene.corners;
+    const std::vector<std::uint32_t>& bad = bad_[attribute];
+    const std::uint32_t element_count = count32(elements);
+    const bool all_in_range = !has_invalid_ && max_index_[attribute] <= element_count;
+    // Nearly all corners are good, and one comparison tells: what is not is in this range.
+    const std::uint32_t first = bad.empty() ? element_count : bad.front();
+    const std::uint32_t span = (all_in_range ? bad.back() + 1 : kAbsent) - first;
+    const auto may_be_bad = [=](const Corner& corner) { return corner.*index - first < span; };
     const auto mend_triangles = [&](std::size_t begin, std::size_t end) {
         Missing missing;
         auto polygon = std::ranges::upper_bound(polygons, begin, {}, &ObjPolygon::first_triangle);
         if (polygon != polygons.begin()) --polygon;
         for (std::size_t t = begin; t < end; ++t) {
+            Corner* const corner = &corners[3 * t];
+            if (!(may_be_bad(corner[0]) | may_be_bad(corner[1]) | may_be_bad(corner[2]))) continue;
             // A fan states the corners of its other triangles but for the last again.
-            if (polygon != polygons.end() && t >= end_of(*polygon)) ++polygon;
-            const bool goes_on = polygon != polygons.end() && t > polygon->first_triangle;
+            while (polygon != polygons.end() && t >= end_of(*polygon)) ++polygon;
+            const bool is_of_fan = polygon != polygons.end() && t >= polygon->first_triangle;
+            const bool goes_on = is_of_fan && t > polygon->first_triangle;
             for (std::size_t k = 0; k < 3; ++k) {
-                std::uint32_t& i = corners[3 * t + k].*index;
-                if (i == kAbsent || (i < elements.size() && !std::isnan(elements[i].x))) continue;
+                std::uint32_t& i = corner[k].*index;
+                if (i == kAbsent || (i < element_count && !std::isnan(elements[i].x))) continue;
                 i = kAbsent;
+                add_range(missing.ranges,
+                          is_of_fan ? TriangleRange{polygon->first_triangle, end_of(*polygon)}
+                                    : TriangleRange{t, t + 1});
                 if (goes_on && k < 2) continue;
                 if (missing.count++ == 0) missing.first_triangle = t;
             }
@@ -309,11 +355,10 @@ void Assembly::mend(ObjAttribute attribute, std::uint32_t Corner::*index,
     for (const Missing& missing : found) {
         if (all.count == 0) all.first_triangle = missing.first_triangle;
         all.count += missing.count;
+        for (const TriangleRange& range : missing.ranges) add_range(all.ranges, range);
     }
-    for (T& element : elements) {
-        if (std::isnan(element.x)) element = T{0.0f};
-    }
-    contents_.lacks_normals |= attribute == kObjNormal && all.count > 0;
+    for (const std::uint32_t i : bad) elements[i] = T{0.0f};
+    if (attribute == kObjNormal) add_ranges(contents_.scene.without_normals, all.ranges);
     warn_of_missing(attribute, all.count, all.first_triangle);
 }
 

@@ -18,7 +18,8 @@ namespace bake {
 /// What an OBJ states. Indices are from 0, all in range. The result does not depend on the size of
 /// the pieces or on the number of threads.
 struct ObjContents {
-    /// Positions, normals (of length 1, or 0), uvs, corners and triangle_material are filled.
+    /// Positions, normals (of length 1, or 0), uvs, corners, triangle_material and, where a normal
+    /// may be missing, without_normals are filled.
     SourceScene scene;
     std::vector<ObjPolygon> polygons;             ///< faces of more than three corners, as fans
     std::vector<ObjSmoothingUse> smoothing_uses;  ///< in the order of their triangles
@@ -30,7 +31,6 @@ struct ObjContents {
     std::vector<ObjStatement> libraries;  ///< mtllib
     std::vector<ObjError> warnings;       ///< in the order of the text
     LineCounter lines{{}};                ///< of the text
-    bool lacks_normals = false;           ///< some corner states no normal, or some normal is 0
 };
 
 /// Parses `text` in pieces of about `chunk_bytes`, on as many threads as TBB is allowed; `name` is

@@ -29,6 +29,7 @@ void ObjChunk::clear() {
     bad_index = {};
     max_index = {};
     text_bytes = {};
+    line_count = 0;
     has_relative = false;
     has_invalid = false;
     has_zero_normal = false;

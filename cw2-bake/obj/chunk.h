@@ -130,6 +130,7 @@ struct ObjChunk {
     std::array<std::optional<ObjError>, 3> bad_element, bad_index;
     ObjCounts max_index{};                    ///< the largest that is not relative, from 1
     std::array<std::size_t, 4> text_bytes{};  ///< of v, vt, vn and f lines; see kObjFaceText
+    std::size_t line_count = 0;
     bool has_relative = false;
     bool has_zero_normal = false;   ///< some is NaN for that
     bool has_invalid = false;       ///< some index is kObjInvalid

@@ -122,6 +122,7 @@ void ChunkParser::parse(std::size_t begin, std::size_t end) {
             const char* next = offset_ < whole_lines ? statement(text.data() + offset_) : nullptr;
             if (next) {
                 offset_ = static_cast<std::size_t>(next - text.data());
+                ++chunk_.line_count;
                 continue;
             }
             std::size_t after = offset_;
@@ -129,7 +130,7 @@ void ChunkParser::parse(std::size_t begin, std::size_t end) {
             joined += '\n';
             limit_ = joined.data() + joined.size();
             if (!statement(joined.data())) other({joined.data(), joined.size() - 1});
-            offset_ = after;
+            for (; offset_ < after; offset_ = line_end(text, offset_)) ++chunk_.line_count;
         }
     } catch (const Failure& failure) {
         chunk_.error = ObjError{offset_, failure.what};

@@ -228,6 +228,7 @@ std::size_t PlainLines::read(std::size_t begin, std::size_t end) {
         const char* const next = line(p);
         if (!next) break;
         p = next;
+        ++chunk_.line_count;
     }
     return static_cast<std::size_t>(p - text_.data());
 }

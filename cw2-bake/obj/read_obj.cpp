@@ -6,10 +6,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <unordered_map>
@@ -66,15 +66,13 @@ void triangulate_polygons(const std::vector<ObjPolygon>& polygons, SourceScene& 
 
 /// Says which triangles are smoothed if some corner has no normal.
 void prepare_missing_normals(const std::vector<ObjSmoothingUse>& uses, SourceScene& scene) {
-    std::atomic<bool> is_missing = false;
-    constexpr std::size_t kBlock = 1 << 14;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, scene.corners.size(), kBlock),
-                      [&](const auto& block) {
-                          if (is_missing) return;
-                          for (std::size_t i = block.begin(); i < block.end(); ++i)
-                              if (scene.corners[i].normal == kAbsent) is_missing = true;
-                      });
-    if (!is_missing) return;
+    const auto lacks_normal = [](const Corner& corner) { return corner.normal == kAbsent; };
+    std::erase_if(scene.without_normals, [&](const TriangleRange& range) {
+        return std::ranges::none_of(
+            std::span(scene.corners).subspan(3 * range.begin, 3 * (range.end - range.begin)),
+            lacks_normal);
+    });
+    if (scene.without_normals.empty()) return;
     std::uint32_t group = 0;
     for (const ObjSmoothingUse& use : uses) {
         scene.smoothing_group.extend(use.first_triangle, group);
@@ -309,7 +307,7 @@ SourceScene read_obj(const std::filesystem::path& path, const Warn& warn, std::s
     for (const ObjError& warning : contents.warnings)
         warn(fmt::format("{}:{}: {}", name, contents.lines.at(warning.offset), warning.what));
     triangulate_polygons(contents.polygons, scene);
-    if (contents.lacks_normals) prepare_missing_normals(contents.smoothing_uses, scene);
+    prepare_missing_normals(contents.smoothing_uses, scene);
 
     scene.files.push_back(path);
     Libraries libraries(path, text, warn, root, scene.files);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -72,6 +73,24 @@ bool grows_with_its_input(const Input& input, const fs::path& profile) {
     return is_good;
 }
 
+/// What is missing costs in proportion to what is missing: of one thing next to nothing.
+int costs_of_what_is_missing(const fs::path& profile) {
+    const std::vector<Input> inputs = nearly_whole_inputs();
+    const auto instructions = [&](const Input& input) {
+        return static_cast<double>(work_of(input, input.n, profile).instructions);
+    };
+    const double whole = instructions(inputs.front());
+    int bad = 0;
+    for (const Input& input : std::span(inputs).subspan(1)) {
+        const double cost = instructions(input) / whole;
+        const bool is_good = cost < 1.04;
+        std::printf("%s %-35s x %.3f of the whole one's instructions\n", is_good ? "    " : "BAD ",
+                    input.name, cost);
+        bad += !is_good;
+    }
+    return bad;
+}
+
 }  // namespace
 
 int main(int, char** argv) {
@@ -86,5 +105,6 @@ int main(int, char** argv) {
         work_of(inputs.front(), 10, argv[1]);  // what happens once
         for (const Input& input : inputs) bad += !grows_with_its_input(input, argv[1]);
     }
+    bad += costs_of_what_is_missing(argv[1]);
     return bad > 0 ? 1 : 0;
 }

@@ -12,6 +12,8 @@ struct Input {
 };
 
 std::vector<Input> obj_inputs();
+/// A sheet of n squares a side, and others of which little is missing.
+std::vector<Input> nearly_whole_inputs();
 /// Meshes whose nodes take turns, and morph targets, are not here: the numbers that they make a
 /// bake read have a bound that does not grow with small files; see GltfPrimitives::expect_node().
 std::vector<Input> gltf_inputs();

@@ -153,7 +153,47 @@ Path triangles_at_one_edge(const Path& folder, int n) {
                                  }));
 }
 
+/// A smooth sheet of n * n squares, with `line` in place of the first that starts as it does.
+Path sheet(const Path& folder, int n, const std::string& head, const std::string& line) {
+    std::string text = lines((n + 1) * (n + 1), [n](int i) {
+        const double u = i % (n + 1) / double(n), v = i / (n + 1) / double(n);
+        return "v " + to_string(u) + " " + to_string(0.1 * std::sin(7 * u * v)) + " " +
+               to_string(v) + "\nvt " + to_string(u) + " " + to_string(v) + "\nvn " +
+               to_string(u - 0.5) + " 1 " + to_string(v - 0.5) + "\n";
+    });
+    const auto corner = [](int i) {
+        return " " + to_string(i) + "/" + to_string(i) + "/" + to_string(i);
+    };
+    text += head;
+    text += lines(n * n, [&](int i) {
+        const int a = i / n * (n + 1) + i % n + 1, b = a + n + 1;
+        return "f" + corner(a) + corner(b) + corner(a + 1) + "\nf" + corner(a + 1) + corner(b) +
+               corner(b + 1) + "\n";
+    });
+    if (!line.empty()) {
+        const std::size_t at =
+            text.find("\n" + line.substr(0, line.find(' ') + 1), text.size() / 3) + 1;
+        text.replace(at, text.find('\n', at) - at, line);
+    }
+    return write_obj(folder, text);
+}
+
 }  // namespace
+
+std::vector<Input> nearly_whole_inputs() {
+    constexpr int kSide = 170;
+    return {
+        {"whole", [](const Path& folder, int n) { return sheet(folder, n, "s 1\n", ""); }, kSide},
+        {"a normal of length 0, smooth",
+         [](const Path& folder, int n) { return sheet(folder, n, "s 1\n", "vn 0 0 0"); }, kSide},
+        {"a normal of length 0, flat",
+         [](const Path& folder, int n) { return sheet(folder, n, "", "vn 0 0 0"); }, kSide},
+        {"a face without normals",
+         [](const Path& folder, int n) { return sheet(folder, n, "s 1\n", "f 1/1 2/2 3/3"); },
+         kSide},
+        {"a UV that is no number",
+         [](const Path& folder, int n) { return sheet(folder, n, "s 1\n", "vt nan nan"); }, kSide}};
+}
 
 std::vector<Input> obj_inputs() {
     return {{"unknown materials", unknown_materials, 60},

@@ -58,4 +58,23 @@ TEST(LineCounter, TellsWhatCountingFromTheStartTells) {
     EXPECT_EQ(bake::line_number(text, text.size()), 8u);
 }
 
+TEST(LineCounter, GoesOnFromWhatWasCountedBefore) {
+    const std::string text = "a\nb\r\nc\rd\n\n\r\n\re";
+    const std::size_t second = text.find('c'), third = text.find("\n\n") + 1;
+    for (std::size_t first = 0; first <= text.size(); ++first) {
+        for (std::size_t next = 0; next <= text.size(); ++next) {
+            bake::LineCounter counter(text);
+            counter.add_counted(2, second);
+            counter.add_counted(2, third);
+            EXPECT_EQ(counter.at(first), bake::line_number(text, first));
+            EXPECT_EQ(counter.at(next), bake::line_number(text, next)) << first << next;
+        }
+    }
+    // It does not look at what it was told of.
+    const std::string blank(text.size(), ' ');
+    bake::LineCounter counter(blank);
+    counter.add_counted(5, third);
+    EXPECT_EQ(counter.at(third + 1), 6u);
+}
+
 }  // namespace

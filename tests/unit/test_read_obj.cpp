@@ -249,6 +249,43 @@ TEST(ReadObj, SaysNothingOfWhatChangesNothing) {
     EXPECT_EQ(reading.warnings, std::vector<std::string>{});
 }
 
+/// What SourceScene promises.
+void expect_contract(const bake::SourceScene& scene) {
+    const auto good = [](float x) { return std::isfinite(x) && !(x == 0 && std::signbit(x)); };
+    for (const auto& p : scene.positions) ASSERT_TRUE(good(p.x) && good(p.y) && good(p.z));
+    for (const auto& n : scene.normals) ASSERT_TRUE(good(n.x) && good(n.y) && good(n.z));
+    for (const auto& uv : scene.uvs) ASSERT_TRUE(good(uv.x) && good(uv.y));
+    ASSERT_FALSE(scene.corners.empty());
+    ASSERT_EQ(scene.corners.size(), 3 * scene.triangle_material.size());
+    bool complete = true;
+    std::vector<bool> may_lack(scene.triangle_material.size());
+    std::size_t end = 0;
+    for (const bake::TriangleRange& range : scene.without_normals) {
+        ASSERT_TRUE(range.begin >= end && range.begin < range.end);
+        ASSERT_LE(end = range.end, may_lack.size());
+        for (std::size_t t = range.begin; t < end; ++t) may_lack[t] = true;
+    }
+    for (std::size_t i = 0; i < scene.corners.size(); ++i) {
+        const bake::Corner& corner = scene.corners[i];
+        ASSERT_TRUE(corner.normal != kAbsent || may_lack[i / 3]);
+        ASSERT_LT(corner.position, scene.positions.size());
+        ASSERT_TRUE(corner.uv == kAbsent || corner.uv < scene.uvs.size());
+        complete &= corner.normal != kAbsent;
+        if (corner.normal == kAbsent) continue;
+        ASSERT_LT(corner.normal, scene.normals.size());
+        const glm::vec3 n = scene.normals[corner.normal];
+        ASSERT_NEAR(std::hypot(n.x, n.y, n.z), 1, 1e-5);
+    }
+    ASSERT_EQ(scene.smoothing_group.size(), complete ? 0 : scene.triangle_material.size());
+    ASSERT_EQ(scene.without_normals.empty(), complete);
+    std::vector<bool> used(scene.materials.size());
+    for (const std::uint32_t material : scene.triangle_material) {
+        ASSERT_LT(material, scene.materials.size());
+        used[material] = true;
+    }
+    ASSERT_EQ(std::count(used.begin(), used.end(), false), 0);
+}
+
 struct Missing {
     const char* what;
     std::string text;  ///< behind a square, vt 0.5 0.5 and vn 0 0 1
@@ -273,6 +310,7 @@ TEST_P(MissingAttribute, IsAbsentWithOneWarning) {
         }
         EXPECT_EQ(bad, GetParam().bad_corners);
         EXPECT_EQ(reading.scene.smoothing_group.empty(), complete);
+        expect_contract(reading.scene);
         for (const glm::vec3& n : reading.scene.normals) EXPECT_FALSE(std::isnan(n.x));
         for (const glm::vec2& uv : reading.scene.uvs) EXPECT_FALSE(std::isnan(uv.x));
     }
@@ -555,33 +593,6 @@ TEST(ReadObj, DependsNeitherOnThePiecesNorOnTheThreads) {
             }
         }
     }
-}
-
-/// What SourceScene promises.
-void expect_contract(const bake::SourceScene& scene) {
-    const auto good = [](float x) { return std::isfinite(x) && !(x == 0 && std::signbit(x)); };
-    for (const auto& p : scene.positions) ASSERT_TRUE(good(p.x) && good(p.y) && good(p.z));
-    for (const auto& n : scene.normals) ASSERT_TRUE(good(n.x) && good(n.y) && good(n.z));
-    for (const auto& uv : scene.uvs) ASSERT_TRUE(good(uv.x) && good(uv.y));
-    ASSERT_FALSE(scene.corners.empty());
-    ASSERT_EQ(scene.corners.size(), 3 * scene.triangle_material.size());
-    bool complete = true;
-    for (const bake::Corner& corner : scene.corners) {
-        ASSERT_LT(corner.position, scene.positions.size());
-        ASSERT_TRUE(corner.uv == kAbsent || corner.uv < scene.uvs.size());
-        complete &= corner.normal != kAbsent;
-        if (corner.normal == kAbsent) continue;
-        ASSERT_LT(corner.normal, scene.normals.size());
-        const glm::vec3 n = scene.normals[corner.normal];
-        ASSERT_NEAR(std::hypot(n.x, n.y, n.z), 1, 1e-5);
-    }
-    ASSERT_EQ(scene.smoothing_group.size(), complete ? 0 : scene.triangle_material.size());
-    std::vector<bool> used(scene.materials.size());
-    for (const std::uint32_t material : scene.triangle_material) {
-        ASSERT_LT(material, scene.materials.size());
-        used[material] = true;
-    }
-    ASSERT_EQ(std::count(used.begin(), used.end(), false), 0);
 }
 
 TEST(ReadObj, EndsInASoundSceneOrAnErrorHoweverAFileIsAltered) {
