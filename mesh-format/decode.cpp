@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <mutex>
+#include <new>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh-format/checker.h"
@@ -37,26 +40,62 @@ std::vector<Bytes> parts_of(Bytes whole, std::size_t count) {
     return offset == whole.size() ? parts : std::vector<Bytes>();
 }
 
-using Stream = std::unique_ptr<std::byte[]>;
+/// What one task after the other uses.
+struct Workplace {
+    std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> zstd{ZSTD_createDCtx(), &ZSTD_freeDCtx};
+    Scratch scratch;
 
-/// Whether the Zstandard frame holds exactly `size` bytes, which then are in `stream`.
-bool unwrap(Bytes frame, std::size_t size, Stream& stream) {
-    stream = std::make_unique_for_overwrite<std::byte[]>(size);
-    return ZSTD_decompress(stream.get(), size, frame.data(), frame.size()) == size;
-}
+    Workplace() {
+        if (!zstd) throw std::bad_alloc();
+    }
+
+    /// Whether the Zstandard frame holds exactly `size` bytes, which then are at `out`.
+    bool unwrap(Bytes frame, std::byte* out, std::size_t size) {
+        return ZSTD_decompressDCtx(zstd.get(), out, size, frame.data(), frame.size()) == size;
+    }
+};
+
+/// As many as there are tasks at once.
+class Workplaces {
+ public:
+    /// Calls use(workplace).
+    template <typename Use>
+    void with_one(const Use& use) {
+        std::unique_ptr<Workplace> workplace = take();
+        workplace->scratch.reset();
+        use(*workplace);
+        const std::lock_guard lock(mutex_);
+        free_.push_back(std::move(workplace));
+    }
+
+ private:
+    std::unique_ptr<Workplace> take() {
+        const std::lock_guard lock(mutex_);
+        if (free_.empty()) return std::make_unique<Workplace>();
+        std::unique_ptr<Workplace> workplace = std::move(free_.back());
+        free_.pop_back();
+        return workplace;
+    }
+
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Workplace>> free_;
+};
 
 bool decode_mesh(const MeshRecord& mesh, Bytes index_part, Bytes vertex_part,
-                 std::span<std::uint16_t> indices, std::byte* vertices) {
-    const auto size = ZSTD_getFrameContentSize(index_part.data(), index_part.size());
+                 std::span<std::uint16_t> indices, std::byte* vertices, Workplace& workplace) {
+    const auto index_size = ZSTD_getFrameContentSize(index_part.data(), index_part.size());
     // Errors are the largest values.
-    if (size > index_stream_bound(mesh.index_count)) return false;
-    Stream stream;
-    const auto memory = std::make_unique_for_overwrite<Neighbours[]>(mesh.vertex_count);
-    const std::span neighbours(memory.get(), mesh.vertex_count);
-    return unwrap(index_part, size, stream) &&
-           decode_indices({stream.get(), size}, indices, neighbours) &&
-           unwrap(vertex_part, vertex_stream_bytes(mesh), stream) &&
-           decode_vertices(mesh, indices, neighbours, stream.get(), vertices);
+    if (index_size > index_stream_bound(mesh.index_count)) return false;
+    Scratch& scratch = workplace.scratch;
+    std::byte* const index_stream = scratch.take<std::byte>(index_size);
+    const std::span neighbours(scratch.take<Neighbours>(mesh.vertex_count), mesh.vertex_count);
+    if (!workplace.unwrap(index_part, index_stream, index_size) ||
+        !decode_indices({index_stream, index_size}, indices, neighbours, scratch))
+        return false;
+    const std::size_t vertex_size = vertex_stream_bytes(mesh);
+    std::byte* const vertex_stream = scratch.take<std::byte>(vertex_size);
+    return workplace.unwrap(vertex_part, vertex_stream, vertex_size) &&
+           decode_vertices(mesh, indices, neighbours, vertex_stream, vertices, scratch);
 }
 
 void run(const Loop& loop, std::size_t count, const std::function<void(std::size_t)>& task) {
@@ -89,6 +128,7 @@ DecodedGeometry decode(Document& document, std::string_view name, const Loop& lo
     const std::size_t count = document.meshes.size();
     const std::vector<Bytes> vertices = parts_of(document.encoded_vertices, count);
     const std::vector<Bytes> indices = parts_of(document.encoded_indices, count);
+    Workplaces workplaces;
     // The tasks are the first to touch this memory, each its mesh's and what lies before that.
     const auto decode_one = [&](std::size_t i) {
         const MeshRecord& mesh = document.meshes[i];
@@ -101,7 +141,12 @@ DecodedGeometry decode(Document& document, std::string_view name, const Loop& lo
                   mesh_indices.data(), std::uint16_t{0});
         if (vertex_layout(mesh.forms).has_gaps)
             std::fill(mesh_vertices, geometry.vertices.get() + vertex_end(mesh), std::byte{0});
-        if (!decode_mesh(mesh, indices[i], vertices[i], mesh_indices, mesh_vertices)) {
+        bool is_sound = false;
+        workplaces.with_one([&](Workplace& workplace) {
+            is_sound =
+                decode_mesh(mesh, indices[i], vertices[i], mesh_indices, mesh_vertices, workplace);
+        });
+        if (!is_sound) {
             throw FormatError(std::string(name) + ": mesh " + std::to_string(i) +
                               ": its encoded geometry is damaged");
         }
@@ -136,13 +181,15 @@ Payload decode_payload(const Document& document, std::size_t texture, std::strin
     const std::size_t first = begin / kPartBytes;
     Payload payload{{}, std::make_unique_for_overwrite<std::byte[]>(size)};
     payload.bytes = {payload.memory.get(), size};
+    Workplaces workplaces;
     run(loop, parts.size() - first, [&](std::size_t i) {
         const Bytes part = parts[first + i];
         const std::uint64_t offset = (first + i) * kPartBytes;
         const std::uint64_t expected = std::min(kPartBytes, size - offset);
-        const std::size_t decoded =
-            ZSTD_decompress(payload.memory.get() + offset, expected, part.data(), part.size());
-        checker.require(decoded == expected, "texture", texture, kDamaged);
+        workplaces.with_one([&](Workplace& workplace) {
+            checker.require(workplace.unwrap(part, payload.memory.get() + offset, expected),
+                            "texture", texture, kDamaged);
+        });
     });
     return payload;
 }

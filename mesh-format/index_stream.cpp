@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <memory>
 #include <utility>
 
 namespace mesh_format {
@@ -38,10 +37,10 @@ enum class Corner { pivot, second, third };
 /// that is asked for the vertices that a code does not say.
 class Triangles {
  public:
-    explicit Triangles(std::span<Neighbours> neighbours)
+    Triangles(std::span<Neighbours> neighbours, Scratch& scratch)
         : neighbours_(neighbours),
-          places_(std::make_unique_for_overwrite<Place[]>(neighbours.size())),
-          covered_(std::make_unique_for_overwrite<Place[]>(neighbours.size())) {
+          places_(scratch.take<Place>(neighbours.size())),
+          covered_(scratch.take<Place>(neighbours.size())) {
         places_[0].set(0, 0);  // where a stream may start
     }
 
@@ -170,9 +169,9 @@ class Triangles {
     }
 
     std::span<Neighbours> neighbours_;
-    std::unique_ptr<Place[]> places_;   // by vertex
-    std::unique_ptr<Place[]> covered_;  // its second place, if it has one
-    std::array<Index, 32> seen_{};      // the last vertices that came
+    Place* places_;                 // by vertex
+    Place* covered_;                // its second place, if it has one
+    std::array<Index, 32> seen_{};  // the last vertices that came
     unsigned seen_count_ = 0;
     unsigned next_ = 0;
     unsigned pivot_ = 0;
@@ -182,7 +181,7 @@ class Triangles {
 
 class Encoder {
  public:
-    explicit Encoder(std::span<Neighbours> neighbours) : triangles_(neighbours) {}
+    explicit Encoder(std::span<Neighbours> neighbours) : triangles_(neighbours, scratch_) {}
 
     void add(unsigned a, unsigned b, unsigned c) {
         Choice best{.bits = 1000};
@@ -249,6 +248,7 @@ class Encoder {
         }
     }
 
+    Scratch scratch_;
     Triangles triangles_;
     Choice choice_{};
     std::vector<std::byte> codes_;
@@ -293,10 +293,10 @@ std::vector<std::byte> encode_indices(std::span<const std::uint16_t> indices,
 }
 
 bool decode_indices(std::span<const std::byte> stream, std::span<std::uint16_t> indices,
-                    std::span<Neighbours> neighbours) {
+                    std::span<Neighbours> neighbours, Scratch& scratch) {
     const std::size_t count = indices.size() / 3;
     if (stream.size() < count || (stream.size() - count) % 2 != 0) return false;
-    Triangles triangles(neighbours);
+    Triangles triangles(neighbours, scratch);
     Numbers numbers(stream.subspan(count), neighbours.size());
     Index* out = indices.data();
     for (const std::byte code : stream.first(count)) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh-format/layout.h"
+#include "mesh-format/scratch.h"
 
 namespace mesh_format {
 
@@ -32,6 +33,6 @@ constexpr std::size_t index_stream_bound(std::size_t index_count) {
 /// Sets the indices that a stream stands for, and the neighbours. A triangle may start at another
 /// of its corners than it did. False if the stream is none, or has an index that is no vertex.
 bool decode_indices(std::span<const std::byte> stream, std::span<std::uint16_t> indices,
-                    std::span<Neighbours> neighbours);
+                    std::span<Neighbours> neighbours, Scratch& scratch);
 
 }  // namespace mesh_format

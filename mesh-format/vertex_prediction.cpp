@@ -56,30 +56,34 @@ const Ratios& ratios() {
     return instance;
 }
 
+/// Without a branch, which no one can predict.
+int with_sign_of(int number, int magnitude) {
+    const int sign = number >> 31;
+    return (magnitude ^ sign) - sign;
+}
+
 template <FrameForm kForm>
 int ratio_of(int digit) {
     using Code = FrameCode<kForm>;
     const int level = std::min(digit, 2 * Code::kZero) - Code::kZero;
     int angle = std::abs(level);
     if (!Code::kWide) angle = (angle * kAngles + Code::kZero / 2) / Code::kZero;
-    const int ratio = ratios().ratio[static_cast<std::size_t>(angle)];
-    return level < 0 ? -ratio : ratio;
+    return with_sign_of(level, ratios().ratio[static_cast<std::size_t>(angle)]);
 }
 
-/// The digit of a component whose ratio to the largest is the tangent of `angle`.
+/// The digit of a component whose ratio to the largest is the tangent of `angle`, of the sign of
+/// `sign`; not negative.
 template <FrameForm kForm>
-int digit_of_angle(int angle) {
+int digit_of_angle(int angle, int sign) {
     using Code = FrameCode<kForm>;
-    int level = std::abs(angle);
-    if (!Code::kWide) level = (level * Code::kZero + kAngles / 2) / kAngles;
-    return Code::kZero + (angle < 0 ? -level : level);
+    const int level = Code::kWide ? angle : (angle * Code::kZero + kAngles / 2) / kAngles;
+    return Code::kZero + with_sign_of(sign, level);
 }
 
 /// Of a ratio in [-kOne, kOne].
 template <FrameForm kForm>
 int digit_of(int ratio) {
-    const int angle = ratios().angle[static_cast<std::size_t>(std::abs(ratio))];
-    return digit_of_angle<kForm>(ratio < 0 ? -angle : angle);
+    return digit_of_angle<kForm>(ratios().angle[static_cast<std::size_t>(std::abs(ratio))], ratio);
 }
 
 struct Polar {
@@ -151,11 +155,8 @@ void FrameCode<kForm>::rebased(const FrameDigits& frame, std::uint32_t largest, 
 }
 
 template <FrameForm kForm>
-int FrameCode<kForm>::of_x_tangent(const FrameDigits& frame) {
-    const std::uint32_t place = partner(frame.top & 3u);
-    const int u = ratio_of<kForm>(frame.others[place == 0 ? 1 : 0]);
-    const int v = ratio_of<kForm>(frame.others[place == 2 ? 1 : 2]);
-    return digit_of<kForm>(u * v / kOne);
+int FrameCode<kForm>::of_x_tangent(int first, int second) {
+    return digit_of<kForm>(ratio_of<kForm>(first) * ratio_of<kForm>(second) / kOne);
 }
 
 // A frame whose tangent is the x axis, made orthogonal to the normal, is a turn by a about the x
@@ -178,8 +179,8 @@ void FrameCode<kForm>::of_normal(const Normal& normal, std::uint32_t largest, Di
     const int half_a = (normal[2] < 0 ? 4 * kAngles - yz.angle : yz.angle) / 2;
     const int first = std::min(largest == 0 ? 2 * kAngles - half_a : half_a, kAngles);
     others[largest == 0 ? 2 : 0] =
-        static_cast<std::int16_t>(digit_of_angle<kForm>(normal[1] > 0 ? -first : first));
-    others[1] = static_cast<std::int16_t>(digit_of_angle<kForm>(normal[0] < 0 ? -half_b : half_b));
+        static_cast<std::int16_t>(digit_of_angle<kForm>(first, normal[1] > 0 ? -1 : 0));
+    others[1] = static_cast<std::int16_t>(digit_of_angle<kForm>(half_b, normal[0] < 0 ? -1 : 0));
 }
 
 template struct FrameCode<FrameForm::quat48>;

@@ -40,6 +40,12 @@ struct FrameCode {
     static constexpr int kZero = kWide ? 16'383 : 405;    ///< the digit of ratio 0
     static constexpr int kLevels = kWide ? 32'768 : 811;  ///< digits are below; 32,767 is spare
 
+    /// Modulo kLevels. Short for 32,768 levels: the next vertex waits for it.
+    static int reduced(int sum) {
+        const int rest = kWide ? sum & (kLevels - 1) : sum % kLevels;
+        return rest < 0 ? rest + kLevels : rest;
+    }
+
     static FrameDigits take_apart(const std::byte* in);
     static void put_together(const FrameDigits& frame, std::byte* out);
 
@@ -50,7 +56,8 @@ struct FrameCode {
 
     /// What digit others[partner(largest)] is where the tangent is the x axis, made orthogonal to
     /// the normal: then the bitangent's x, 2 (xy - zw) of the quaternion, is 0.
-    static int of_x_tangent(const FrameDigits& frame);
+    /// `first` and `second` are the other two digits, in their order.
+    static int of_x_tangent(int first, int second);
 
     /// Sets `others` to the digits of such a frame if it has this normal, except for
     /// others[partner(largest)]. Component `largest` is x or w, as it always is in such frames.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "mesh-format/vertex_prediction.h"
+#include "mesh-format/vertex_rows.h"
 
 namespace mesh_format {
 
@@ -190,7 +191,9 @@ class Frames {
             const std::uint32_t second = place == 2 ? 1 : 2;
             code_digit<kEncode>(words_[0][i], expected[first], frame.others[first]);
             code_digit<kEncode>(words_[1][i], expected[second], frame.others[second]);
-            code_digit<kEncode>(words_[2][i], Code::of_x_tangent(frame), frame.others[place]);
+            code_digit<kEncode>(words_[2][i],
+                                Code::of_x_tangent(frame.others[first], frame.others[second]),
+                                frame.others[place]);
         } else {
             for (std::size_t k = 0; k < 3; ++k)
                 code_digit<kEncode>(words_[k][i], expected[k], frame.others[k]);
@@ -222,10 +225,8 @@ class Frames {
             if (difference < -(Code::kLevels / 2)) difference += Code::kLevels;
             word = zigzag(static_cast<std::uint16_t>(difference));
         } else {
-            const int sum = expected + static_cast<std::int16_t>(word);
-            // Short for 32,768 levels: the next vertex waits for it.
-            const int rest = Code::kWide ? sum & (Code::kLevels - 1) : sum % Code::kLevels;
-            digit = static_cast<std::int16_t>(rest < 0 ? rest + Code::kLevels : rest);
+            digit = static_cast<std::int16_t>(
+                Code::reduced(expected + static_cast<std::int16_t>(word)));
         }
     }
 
@@ -338,10 +339,14 @@ std::vector<std::byte> encode_vertices(const MeshRecord& mesh,
 
 bool decode_vertices(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
                      std::span<const Neighbours> neighbours, const std::byte* stream,
-                     std::byte* vertices) {
+                     std::byte* vertices, Scratch& scratch) {
     const auto model = static_cast<FrameModel>(stream[0]);
     if (!allows(mesh.forms, model)) return false;
     const std::byte* planes = stream + 1;
+    if (are_rows(mesh.forms, model)) {
+        decode_rows(mesh, model, neighbours, planes, vertices, scratch);
+        return true;
+    }
     for_each_words(mesh.forms, neighbours, [&](auto part, std::uint32_t offset) {
         part.decode(planes, vertices + offset);
         planes += part.kPlanes * mesh.vertex_count;

@@ -27,6 +27,6 @@ std::vector<std::byte> encode_vertices(const MeshRecord& mesh,
 /// vertices. False if the stream is none; any other bytes become vertices, too.
 bool decode_vertices(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
                      std::span<const Neighbours> neighbours, const std::byte* stream,
-                     std::byte* vertices);
+                     std::byte* vertices, Scratch& scratch);
 
 }  // namespace mesh_format

@@ -22,7 +22,8 @@ struct Decoded {
 
 Decoded decoded(const Bytes& stream, std::size_t index_count, std::size_t vertex_count) {
     Decoded result{false, Indices(index_count), std::vector<Neighbours>(vertex_count)};
-    result.sound = decode_indices(stream, result.indices, result.neighbours);
+    Scratch scratch;
+    result.sound = decode_indices(stream, result.indices, result.neighbours, scratch);
     return result;
 }
 

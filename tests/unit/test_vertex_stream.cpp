@@ -82,8 +82,9 @@ Bytes encoded(const MeshRecord& mesh, const Indices& indices, const Bytes& verti
 
 Bytes decoded(const MeshRecord& mesh, const Indices& indices, const Bytes& stream) {
     Bytes vertices(std::size_t{mesh.vertex_count} * vertex_layout(mesh.forms).stride);
+    Scratch scratch;
     EXPECT_TRUE(decode_vertices(mesh, indices, neighbours_of(mesh, indices), stream.data(),
-                                vertices.data()));
+                                vertices.data(), scratch));
     return vertices;
 }
 
@@ -154,8 +155,9 @@ TEST(VertexStream, AnyBytesBecomeVerticesOrAreRefused) {
             const bool in_digits = forms.frame <= FrameForm::quat32;
             const bool quantised = forms.position == PositionForm::quantised;
             const bool sound[] = {true, in_digits, in_digits && quantised, false};
+            Scratch scratch;
             EXPECT_EQ(decode_vertices(mesh, sheet(), neighbours_of(mesh, sheet()), stream.data(),
-                                      vertices.data()),
+                                      vertices.data(), scratch),
                       sound[i % 4]);
         }
     }
