@@ -1,5 +1,7 @@
 // BC7: two subsets of a block's texels, each on a line of its own, eight steps from end to end.
 
+#include <bit>
+
 #include "common/every_cpu.h"
 #include "cw2-bake/textures/block_lanes.h"
 #include "mesh-format/bc7.h"
@@ -14,72 +16,85 @@ struct Masks {
     Ints of[16];
 };
 
-/// Sums over texels: how many, of their colours, and of the products of those.
+/// Sums over texels of their colours and of the products of those.
 struct Moments {
-    Floats count{};
-    Floats sum[3]{};
-    Floats product[3][3]{};  ///< where the first index is not above the second
+    Floats sum[3];
+    Floats product[6];  ///< red by red, by green, by blue, green by green, by blue, blue by blue
 
-    CW2_INLINE void covariance(Floats (&result)[3][3]) const {
-        const Floats scale = 1.0f / larger(count, all(1.0f));
+    /// Of one texel.
+    CW2_INLINE void set(const Colors& colors, int texel) {
+        int i = 0;
         for (int a = 0; a < 3; ++a) {
-            for (int b = a; b < 3; ++b) {
-                result[a][b] = product[a][b] - sum[a] * sum[b] * scale;
+            sum[a] = colors.channel[a].of[texel];
+            for (int b = a; b < 3; ++b, ++i)
+                product[i] = colors.channel[a].of[texel] * colors.channel[b].of[texel];
+        }
+    }
+    CW2_INLINE void add(const Moments& other) {
+        for (int i = 0; i < 3; ++i) sum[i] += other.sum[i];
+        for (int i = 0; i < 6; ++i) product[i] += other.product[i];
+    }
+    CW2_INLINE void subtract(const Moments& other) {
+        for (int i = 0; i < 3; ++i) sum[i] -= other.sum[i];
+        for (int i = 0; i < 6; ++i) product[i] -= other.product[i];
+    }
+    /// Of so many texels, times their number.
+    CW2_INLINE void covariance(Floats count, Floats (&result)[3][3]) const {
+        const Floats scale = 1.0f / count;
+        int i = 0;
+        for (int a = 0; a < 3; ++a) {
+            for (int b = a; b < 3; ++b, ++i) {
+                result[a][b] = product[i] - sum[a] * sum[b] * scale;
                 result[b][a] = result[a][b];
             }
         }
     }
 };
 
-/// Of the texels whose bits are set.
-CW2_INLINE Moments moments_of(const Colors& colors, std::uint32_t texels) {
-    Moments moments;
-    for (std::uint32_t i = 0; i < 16; ++i) {
-        const float weight = texels >> i & 1 ? 1.0f : 0.0f;
-        moments.count += weight;
-        Floats color[3];
-        for (int c = 0; c < 3; ++c) color[c] = colors.channel[c].of[i] * weight;
-        for (int a = 0; a < 3; ++a) {
-            moments.sum[a] += color[a];
-            for (int b = a; b < 3; ++b) moments.product[a][b] += color[a] * colors.channel[b].of[i];
-        }
+/// The variance along the direction in which colours of this covariance differ most, nearly.
+CW2_INLINE Floats largest_variance(const Floats (&covariance)[3][3]) {
+    Floats axis[3];
+    widest_row(covariance, axis);
+    Floats square{};
+    Floats variance{};
+    Floats next[3];
+    times(covariance, axis, next);
+    times(covariance, next, axis);
+    for (int c = 0; c < 3; ++c) {
+        square += next[c] * next[c];
+        variance += next[c] * axis[c];
     }
-    return moments;
-}
-
-CW2_INLINE Moments difference(const Moments& whole, const Moments& part) {
-    Moments rest = whole;
-    rest.count -= part.count;
-    for (int a = 0; a < 3; ++a) {
-        rest.sum[a] -= part.sum[a];
-        for (int b = a; b < 3; ++b) rest.product[a][b] -= part.product[a][b];
-    }
-    return rest;
+    return variance / larger(square, all(1e-20f));
 }
 
 /// About the squared error that a line with eight steps leaves: what lies beside it, and a share of
 /// what lies along it.
-CW2_INLINE Floats estimate(const Moments& moments) {
+CW2_INLINE Floats estimate(const Moments& moments, int count) {
     Floats covariance[3][3];
-    moments.covariance(covariance);
-    Floats axis[3];
-    const Floats square = principal_axis(covariance, axis, 2);
-    Floats along{};
-    for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b < 3; ++b) along += axis[a] * covariance[a][b] * axis[b];
-    }
-    along /= larger(square, all(1e-20f));
+    moments.covariance(all(static_cast<float>(count)), covariance);
+    const Floats along = largest_variance(covariance);
     constexpr float kBeside = 0.98f;
     return covariance[0][0] + covariance[1][1] + covariance[2][2] - kBeside * along;
 }
 
 CW2_INLINE Ints best_partition(const Colors& colors) {
-    const Moments whole = moments_of(colors, 0xFFFF);
+    Moments texels[16];
+    Moments whole{};
+    for (int i = 0; i < 16; ++i) {
+        texels[i].set(colors, i);
+        whole.add(texels[i]);
+    }
     Ints best{};
     Floats least = all(1e30f);
     for (std::uint32_t partition = 0; partition < kBc7Partitions; ++partition) {
-        const Moments second = moments_of(colors, mesh_format::kBc7Subsets[partition]);
-        const Floats error = estimate(second) + estimate(difference(whole, second));
+        const std::uint32_t subset = mesh_format::kBc7Subsets[partition];
+        Moments second{};
+        for (std::uint32_t left = subset; left != 0; left &= left - 1)
+            second.add(texels[std::countr_zero(left)]);
+        Moments first = whole;
+        first.subtract(second);
+        const int count = std::popcount(subset);
+        const Floats error = estimate(first, 16 - count) + estimate(second, count);
         best = error < least ? Ints{} + static_cast<std::int32_t>(partition) : best;
         least = smaller(least, error);
     }
@@ -99,6 +114,31 @@ struct Line {
 CW2_INLINE Ints quantise(Floats value, Ints lowest) {
     const Floats six = (value * (127.0f / 255.0f) - to_floats(lowest)) * 0.5f;
     return to_ints(smaller(larger(six, Floats{}), all(63.0f)) + 0.5f);
+}
+
+/// The nearest ends that a line can have, in the lanes of `where`.
+CW2_INLINE void set_ends(const Floats (&first)[3], const Floats (&second)[3], Ints where,
+                         Line& line) {
+    Floats least = all(1e30f);
+    for (std::int32_t lowest = 0; lowest < 2; ++lowest) {
+        const Ints bit = Ints{} + lowest;
+        Ints ends[2][3];
+        Floats error{};
+        for (int c = 0; c < 3; ++c) {
+            ends[0][c] = quantise(first[c], bit);
+            ends[1][c] = quantise(second[c], bit);
+            const Floats off[2] = {first[c] - to_floats(mesh_format::expand_bc7(ends[0][c], bit)),
+                                   second[c] - to_floats(mesh_format::expand_bc7(ends[1][c], bit))};
+            error += off[0] * off[0] + off[1] * off[1];
+        }
+        const Ints better = where & (error < least);
+        for (int c = 0; c < 3; ++c) {
+            line.first[c] = better ? ends[0][c] : line.first[c];
+            line.second[c] = better ? ends[1][c] : line.second[c];
+        }
+        line.lowest = better ? bit : line.lowest;
+        least = smaller(least, error);
+    }
 }
 
 CW2_INLINE void match(const Colors& colors, const Masks& inside, Line& line) {
@@ -135,22 +175,24 @@ CW2_INLINE void match(const Colors& colors, const Masks& inside, Line& line) {
 /// The ends on the line through the mean along the direction in which the colours differ most.
 CW2_INLINE void principal_ends(const Colors& colors, const Masks& inside, Floats (&first)[3],
                                Floats (&second)[3]) {
-    Moments moments;
+    Moments moments{};
+    Floats count{};
     for (int i = 0; i < 16; ++i) {
+        Moments texel;
+        texel.set(colors, i);
         const Floats weight = inside.of[i] ? all(1.0f) : Floats{};
-        moments.count += weight;
-        for (int a = 0; a < 3; ++a) {
-            const Floats value = colors.channel[a].of[i] * weight;
-            moments.sum[a] += value;
-            for (int b = a; b < 3; ++b) moments.product[a][b] += value * colors.channel[b].of[i];
-        }
+        count += weight;
+        for (Floats& sum : texel.sum) sum *= weight;
+        for (Floats& product : texel.product) product *= weight;
+        moments.add(texel);
     }
+    count = larger(count, all(1.0f));
     Floats covariance[3][3];
-    moments.covariance(covariance);
+    moments.covariance(count, covariance);
     Floats axis[3];
     const Floats square = principal_axis(covariance, axis);
     Floats mean[3];
-    for (int c = 0; c < 3; ++c) mean[c] = moments.sum[c] / larger(moments.count, all(1.0f));
+    for (int c = 0; c < 3; ++c) mean[c] = moments.sum[c] / count;
     Floats least{};
     Floats most{};
     for (int i = 0; i < 16; ++i) {
@@ -190,14 +232,13 @@ CW2_INLINE void refine(const Colors& colors, const Masks& inside, Line& line) {
     const Floats determinant = first_square * second_square - product * product;
     const Ints solvable = determinant > 0.5f;
     const Floats scale = 7.0f / (solvable ? determinant : all(1.0f));
+    Floats first[3];
+    Floats second[3];
     for (int c = 0; c < 3; ++c) {
-        const Ints first =
-            quantise((second_square * first_sum[c] - product * second_sum[c]) * scale, line.lowest);
-        const Ints second =
-            quantise((first_square * second_sum[c] - product * first_sum[c]) * scale, line.lowest);
-        line.first[c] = solvable ? first : line.first[c];
-        line.second[c] = solvable ? second : line.second[c];
+        first[c] = (second_square * first_sum[c] - product * second_sum[c]) * scale;
+        second[c] = (first_square * second_sum[c] - product * first_sum[c]) * scale;
     }
+    set_ends(first, second, solvable, line);
 }
 
 /// Replaces `best` in the lanes where `other` is nearer.
@@ -221,20 +262,12 @@ CW2_INLINE Line fit(const Colors& colors, const Masks& inside, int anchor) {
     Floats second[3];
     principal_ends(colors, inside, first, second);
     Line best{};
-    best.total = all(1e30f);
-    for (std::int32_t lowest = 0; lowest < 2; ++lowest) {
-        Line line{};
-        line.lowest = Ints{} + lowest;
-        for (int c = 0; c < 3; ++c) {
-            line.first[c] = quantise(first[c], line.lowest);
-            line.second[c] = quantise(second[c], line.lowest);
-        }
-        match(colors, inside, line);
-        keep_better(line, best);
-        refine(colors, inside, line);
-        match(colors, inside, line);
-        keep_better(line, best);
-    }
+    set_ends(first, second, ~Ints{}, best);
+    match(colors, inside, best);
+    Line line = best;
+    refine(colors, inside, line);
+    match(colors, inside, line);
+    keep_better(line, best);
     // From either end the same colours lie between.
     const Ints turned = best.steps.of[anchor] > 3.5f;
     for (int c = 0; c < 3; ++c) {

@@ -119,23 +119,31 @@ CW2_INLINE void gather_colors(const Place& place, Colors& colors) {
     for (int c = 0; c < 3; ++c) channel(texels, c, colors.channel[c]);
 }
 
-/// The direction in which colours of this covariance differ most, its largest part 1, by `steps`
-/// of power iteration from the row of the channel that varies most. Returns its square.
-CW2_INLINE Floats principal_axis(const Floats (&covariance)[3][3], Floats (&axis)[3],
-                                 int steps = 4) {
+CW2_INLINE void times(const Floats (&matrix)[3][3], const Floats (&vector)[3],
+                      Floats (&product)[3]) {
+    for (int c = 0; c < 3; ++c) {
+        product[c] = matrix[c][0] * vector[0] + matrix[c][1] * vector[1] + matrix[c][2] * vector[2];
+    }
+}
+
+/// The row of the channel that varies most.
+CW2_INLINE void widest_row(const Floats (&covariance)[3][3], Floats (&row)[3]) {
     const Ints red =
         (covariance[0][0] >= covariance[1][1]) & (covariance[0][0] >= covariance[2][2]);
     const Ints green = covariance[1][1] >= covariance[2][2];
     for (int c = 0; c < 3; ++c) {
         const Floats other = green ? covariance[1][c] : covariance[2][c];
-        axis[c] = red ? covariance[0][c] : other;
+        row[c] = red ? covariance[0][c] : other;
     }
-    for (int step = 0; step < steps; ++step) {
+}
+
+/// The direction in which colours of this covariance differ most, its largest part 1, by power
+/// iteration from widest_row(). Returns its square.
+CW2_INLINE Floats principal_axis(const Floats (&covariance)[3][3], Floats (&axis)[3]) {
+    widest_row(covariance, axis);
+    for (int step = 0; step < 4; ++step) {
         Floats next[3];
-        for (int c = 0; c < 3; ++c) {
-            next[c] = covariance[c][0] * axis[0] + covariance[c][1] * axis[1] +
-                      covariance[c][2] * axis[2];
-        }
+        times(covariance, axis, next);
         std::copy_n(next, 3, axis);
     }
     Floats longest = all(1e-20f);
