@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "cw2-bake/textures/block_compression.h"
 #include "cw2-bake/textures/mask_coverage.h"
 #include "cw2-bake/textures/mip_chain.h"
 #include "cw2-bake/textures/row_ring.h"
@@ -148,7 +149,9 @@ std::vector<std::byte> filter_mask(const TexelSource& source, const MaskUse& use
     std::vector<Level> levels = smaller_levels(encoding);
     const std::span<const std::byte> first(payload.data(),
                                            std::size_t{source.width} * source.height);
-    MaskCoverage coverage(first, source.width, source.height, use);
+    MaskUse stored = use;
+    stored.blocks &= fits_blocks({first.data(), source.width, source.height}, use.cutoff);
+    MaskCoverage coverage(first, source.width, source.height, stored);
     for (std::size_t i = 0; i < levels.size(); ++i) {
         const auto number = static_cast<std::uint32_t>(i + 1);
         coverage.store_next(levels[i], level_bytes(payload, kFormat, source, number));

@@ -340,7 +340,7 @@ ImageResult make_textures(const ImageRequest& request, TextureForm form, ImageCa
             break;
     }
     if (form.mode == TextureMode::bc) {
-        if (result.texture) compress_to_blocks(*result.texture);
+        if (result.texture) compress_to_blocks(*result.texture, std::nullopt, form.compressed);
         if (result.alpha_mask) compress_to_blocks(*result.alpha_mask, request.alpha_cutoff);
     }
     if (form.compressed) {

@@ -58,7 +58,7 @@ std::vector<std::byte> filter_chain(mesh_format::TextureFormat format, const Tex
 struct MaskUse {
     float cutoff;         ///< what is below is hidden
     bool clamp = false;   ///< the texture does not repeat; beyond hidden edges it is 0
-    bool blocks = false;  ///< it will be stored in blocks, as compress_to_blocks() makes them
+    bool blocks = false;  ///< compress_to_blocks() will be asked to store it
 };
 
 /// The payload of an alpha mask (r8_unorm; values in [0, 1]): each level shows what level 0 shows

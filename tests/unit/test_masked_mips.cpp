@@ -29,8 +29,8 @@ Image grey(std::uint32_t width, std::uint32_t height,
     return image;
 }
 
-/// Leaves on thin stalks, with soft edges.
-Image leaves(std::uint32_t width, std::uint32_t height) {
+/// Leaves on thin stalks, with soft edges; sharper ones of a larger slope.
+Image leaves(std::uint32_t width, std::uint32_t height, double slope = 4.0) {
     return grey(width, height, [=](std::uint32_t x, std::uint32_t y) {
         const double u = 6.0 * x / width;
         const double v = 5.0 * y / height;
@@ -41,7 +41,7 @@ Image leaves(std::uint32_t width, std::uint32_t height) {
         const double b = -std::sin(tilt) * fu + std::cos(tilt) * fv;
         const double leaf = 1.0 - std::hypot(a / 0.4, b / 0.13);
         const double stalk = 1.0 - std::abs(fu) / 0.02;
-        return 0.5 + 4.0 * std::max(leaf, 0.25 * stalk);
+        return 0.5 + slope * std::max(leaf, 0.25 * stalk);
     });
 }
 
@@ -52,12 +52,12 @@ Image noise(std::uint32_t width, std::uint32_t height, double power) {
 }
 
 /// One, where every ring of a level of 4 texels a ring is alike, and all texels of smaller ones.
-Image rings(std::uint32_t size, std::uint32_t count) {
+Image rings(std::uint32_t size, std::uint32_t count, double softness = 1.0) {
     return grey(size, size, [=](std::uint32_t x, std::uint32_t y) {
         const std::uint32_t ring = size / count;
         const double radius =
             std::hypot((x % ring + 0.5) / ring - 0.5, (y % ring + 0.5) / ring - 0.5);
-        return 0.5 + ring * (0.08 - std::abs(radius - 0.38));
+        return 0.5 + ring / softness * (0.08 - std::abs(radius - 0.38));
     });
 }
 
@@ -209,8 +209,9 @@ std::vector<std::byte> decode(const bake::Texture& mask) {
     return payload;
 }
 
-TEST(AlphaMask, ShowsTheSameShareOnceItIsInBlocks) {
-    for (const Image& image : {leaves(256, 256), leaves(300, 201), rings(256, 8)}) {
+TEST(AlphaMask, ShowsTheSameShareInBlocksAndWhereThoseAreTooFarOff) {
+    const auto check = [](const Image& image, TextureFormat expected) {
+        SCOPED_TRACE(testing::Message() << image.width << " texels wide");
         const bake::MaskUse use{.cutoff = 0.5f, .blocks = true};
         bake::Texture mask{
             .name = "mask",
@@ -219,11 +220,28 @@ TEST(AlphaMask, ShowsTheSameShareOnceItIsInBlocks) {
             .height = image.height,
             .payload = bake::filter_mask(bake::scalar_texels(image, bake::Channel::r), use)};
         bake::compress_to_blocks(mask, use.cutoff);
-        ASSERT_EQ(mask.format, TextureFormat::bc4_unorm);
-        SCOPED_TRACE(testing::Message() << image.width << " texels wide");
-        const std::vector<std::byte> payload = decode(mask);
+        EXPECT_EQ(mask.format, expected) << mask.psnr << " dB";
+        const bool plain = mask.format == TextureFormat::r8_unorm;
+        const std::vector<std::byte> payload = plain ? mask.payload : decode(mask);
         expect_coverage(levels_of(payload, mask.width, mask.height, false), use.cutoff, 0.05);
-    }
+    };
+    check(leaves(256, 256, 12.0), TextureFormat::bc4_unorm);
+    check(leaves(600, 401, 30.0), TextureFormat::bc4_unorm);
+    check(rings(256, 8, 0.4), TextureFormat::bc4_unorm);
+    check(leaves(256, 256), TextureFormat::r8_unorm);
+    check(leaves(300, 201), TextureFormat::r8_unorm);
+    check(rings(256, 8), TextureFormat::r8_unorm);
+}
+
+TEST(AlphaMask, OneThatBlocksMissIsMadeAsIfThereWereNone) {
+    const Image image = leaves(256, 256);
+    const bake::TexelSource mask = bake::scalar_texels(image, bake::Channel::r);
+    EXPECT_EQ(bake::filter_mask(mask, {.cutoff = 0.5f, .blocks = true}),
+              bake::filter_mask(mask, {.cutoff = 0.5f}));
+    const Image sharp = leaves(256, 256, 12.0);
+    const bake::TexelSource other = bake::scalar_texels(sharp, bake::Channel::r);
+    EXPECT_NE(bake::filter_mask(other, {.cutoff = 0.5f, .blocks = true}),
+              bake::filter_mask(other, {.cutoff = 0.5f}));
 }
 
 TEST(AlphaMask, AveragesWhereTheCoverageIsRightAlready) {

@@ -1,47 +1,13 @@
-#include "cw2-bake/textures/block_encoders.h"
+// BC1: the colours of a block on one line, three steps from end to end.
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "common/every_cpu.h"
 #include "cw2-bake/textures/block_lanes.h"
 
 namespace bake {
 namespace {
-
-// ---- BC4 ----
-
-/// Encodes one channel; `values` become what the blocks decode to.
-CW2_INLINE void encode_scalars(Values& values, std::int32_t limit, Ints& low, Ints& high) {
-    Floats least = values.of[0];
-    Floats most = values.of[0];
-    for (const Floats value : values.of) {
-        least = smaller(least, value);
-        most = larger(most, value);
-    }
-    const Ints range = to_ints(most - least);
-    const Floats scale = 7.0f / larger(most - least, all(1.0f));
-    const Ints crosses = (least < static_cast<float>(limit)) & (most >= static_cast<float>(limit));
-    Ints bits[2]{};
-    for (int i = 0; i < 16; ++i) {
-        // Steps down from the largest value, 0 to 7.
-        Ints steps = to_ints((most - values.of[i]) * scale + 0.5f);
-        // x * 9363 >> 16 is x / 7 for the x that come up.
-        const auto decode = [&] { return to_ints(most) - ((steps * range + 3) * 9363 >> 16); };
-        const Ints shown = values.of[i] >= static_cast<float>(limit);
-        const Ints strays = crosses & (shown ^ (decode() >= limit));
-        steps += strays & (shown ? Ints{} - 1 : Ints{} + 1);
-        values.of[i] = to_floats(decode());
-        // The ends come first, then what lies between them.
-        const Ints index = steps == 0 ? Ints{} : steps == 7 ? Ints{} + 1 : steps + 1;
-        bits[i / 8] |= index << 3 * (i % 8);
-    }
-    low = to_ints(most) | to_ints(least) << 8 | bits[0] << 16;
-    high = (bits[0] >> 16 & 255) | bits[1] << 8;
-}
-
-// ---- BC1 ----
 
 /// Two colours for the ends of the palette, in 5, 6 and 5 bits.
 struct Ends {
@@ -278,82 +244,12 @@ CW2_INLINE double encode_colors(const Place& place, std::byte* out) {
     return sum_inside(best.errors, place);
 }
 
-// ---- BC5 ----
-
-CW2_INLINE Floats square_root(Floats values) {
-    Floats roots;
-    for (std::uint32_t lane = 0; lane < kLanes; ++lane) roots[lane] = std::sqrt(values[lane]);
-    return roots;
-}
-
-/// What 0.5 n + 0.5 in 8 bits stands for.
-CW2_INLINE Floats component(Floats value) {
-    return value * (2.0f / 255.0f) - 1.0f;
-}
-/// z of a normal.
-CW2_INLINE Floats height(Floats x, Floats y) {
-    return square_root(larger(1.0f - x * x - y * y, Floats{}));
-}
-
-CW2_INLINE double encode_normals(const Place& place, std::byte* out) {
-    Ints texels[16];
-    gather<std::uint16_t>(place, texels);
-    Values decoded[2];
-    for (int c = 0; c < 2; ++c) {
-        channel(texels, c, decoded[c]);
-        Ints low;
-        Ints high;
-        encode_scalars(decoded[c], 0, low, high);
-        store(place, low, high, out + 8 * c, 16);
-    }
-    Values errors;
-    for (int i = 0; i < 16; ++i) {
-        const Floats x = component(decoded[0].of[i]);
-        const Floats y = component(decoded[1].of[i]);
-        const Floats true_x = component(to_floats(texels[i] & 255));
-        const Floats true_y = component(to_floats(texels[i] >> 8));
-        const Floats off[3]{x - true_x, y - true_y, height(x, y) - height(true_x, true_y)};
-        errors.of[i] = off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
-    }
-    return sum_inside(errors, place) * (127.5 * 127.5);
-}
-
 }  // namespace
 
 CW2_EVERY_CPU double encode_bc1_row(const PlainLevel& level, std::uint32_t top, std::byte* out) {
     double error = 0.0;
     for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += 8 * kLanes) {
         error += encode_colors({level, left, top}, out);
-    }
-    return error;
-}
-
-CW2_EVERY_CPU double encode_bc4_row(const PlainLevel& level, std::uint32_t top, std::uint32_t limit,
-                                    std::byte* out) {
-    double error = 0.0;
-    for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += 8 * kLanes) {
-        const Place place{level, left, top};
-        Ints texels[16];
-        gather<std::uint8_t>(place, texels);
-        Values decoded;
-        for (int i = 0; i < 16; ++i) decoded.of[i] = to_floats(texels[i]);
-        Ints low;
-        Ints high;
-        encode_scalars(decoded, static_cast<std::int32_t>(limit), low, high);
-        store(place, low, high, out, 8);
-        for (int i = 0; i < 16; ++i) {
-            const Floats difference = to_floats(texels[i]) - decoded.of[i];
-            decoded.of[i] = difference * difference;
-        }
-        error += sum_inside(decoded, place);
-    }
-    return error;
-}
-
-CW2_EVERY_CPU double encode_bc5_row(const PlainLevel& level, std::uint32_t top, std::byte* out) {
-    double error = 0.0;
-    for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += 16 * kLanes) {
-        error += encode_normals({level, left, top}, out);
     }
     return error;
 }
