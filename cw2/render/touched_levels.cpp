@@ -183,7 +183,12 @@ std::vector<Triangles> triangles_of(const Document& document, const Lens& lens) 
     return triangles;
 }
 
-/// Of every material.
+bool is_textured(const mesh_format::MaterialRecord& material) {
+    return std::ranges::any_of(material.textures.values,
+                               [](std::uint32_t texture) { return texture != kNoTexture; });
+}
+
+/// Of every material that is textured.
 std::vector<float> least_steps(const Document& document, const Bounds& bounds, const Lens& lens,
                                const std::vector<Triangles>& triangles) {
     std::vector<Mesh> meshes;
@@ -192,9 +197,11 @@ std::vector<float> least_steps(const Document& document, const Bounds& bounds, c
         meshes.push_back({&mesh, positions});
         positions += mesh.vertex_count;
     }
-    std::vector<float> steps(triangles.size());
+    std::vector<float> steps(triangles.size(), kNever);
     tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t i) {
-        steps[i] = least_step(document, meshes[triangles[i].mesh], triangles[i].indices, lens);
+        const MeshRecord& mesh = document.meshes[triangles[i].mesh];
+        if (is_textured(document.materials[mesh.material]))
+            steps[i] = least_step(document, meshes[triangles[i].mesh], triangles[i].indices, lens);
     });
     std::vector<float> of_material(document.materials.size(), kNever);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
