@@ -1,13 +1,19 @@
 #include "cw2/render/shown_triangles.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <cstddef>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <iterator>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "cw2/render/visibility.h"
@@ -20,7 +26,7 @@ namespace {
 constexpr float kRounding = 1.0f / 64.0f;
 /// Of a depth; devices' floats err by less.
 constexpr float kDepthErrors = 3e-4f;
-/// Triangles that are gathered, see Finder::gather().
+/// Triangles that are gathered, see Gatherer::gather().
 constexpr std::size_t kRun = 4096;
 constexpr float kAlwaysSeen = std::numeric_limits<float>::infinity();
 
@@ -32,13 +38,37 @@ struct SeenCorner {
 
 using Triangle = std::array<PictureCorner, 3>;
 
+/// A triangle, by when it is drawn.
+struct Place {
+    std::uint32_t chunk;        ///< its place among those that are looked at
+    std::uint32_t first_index;  ///< in its chunk
+    auto operator<=>(const Place&) const = default;
+};
+
 /// What may be seen of the triangles, until all that hides is drawn.
 struct Candidate {
-    PixelRect around;               ///< its pixels and one more to each side
-    float nearest;                  ///< depth
-    std::uint32_t first_index = 0;  ///< in its chunk
-    std::uint32_t chunk = 0;
+    PixelRect around;  ///< its pixels and one more to each side
+    float nearest;     ///< depth
+    Place place{};
 };
+
+/// Rows of a picture, which are found out about apart. A band's depths have one row more to each
+/// side, for what is next to a triangle.
+struct Band {
+    int top, bottom;  ///< rows of the picture, bottom is the last
+
+    int first_row() const { return std::max(top - 1, 0); }
+};
+
+/// Bands of at least so many rows, as what lies in two is looked at twice.
+std::vector<Band> bands_of(int height) {
+    constexpr int kLeastRows = 32;
+    const int count = std::clamp(height / kLeastRows, 1, int{std::tuple_size_v<BandDepths>});
+    std::vector<Band> bands;
+    for (int i = 0; i < count; ++i)
+        bands.push_back({height * i / count, height * (i + 1) / count - 1});
+    return bands;
+}
 
 float least(float a, float b, float c) {
     return std::min(std::min(a, b), c);
@@ -58,26 +88,43 @@ int last_center(float edge) {
     return static_cast<int>(kAbove + (edge - 0.5f + kRounding)) - static_cast<int>(kAbove);
 }
 
+/// Finds what is shown in a band.
 class Finder {
  public:
-    Finder(const SceneTriangles& scene, const PictureView& view, DepthBuffer& depth)
+    Finder(const SceneTriangles& scene, const PictureView& view, const Band& band,
+           DepthBuffer& depth)
         : scene_(scene),
           near_(view.near),
           clip_(view.clip_from_world),
           depth_(depth),
           width_(static_cast<int>(view.area.extent.width)),
-          height_(static_cast<int>(view.area.extent.height)),
+          height_(std::min(band.bottom + 1, static_cast<int>(view.area.extent.height) - 1) -
+                  band.first_row() + 1),
+          top_(band.top - band.first_row()),
+          bottom_(band.bottom - band.first_row()),
           half_(0.5f * glm::vec2(view.extent.width, view.extent.height)),
-          center_(half_ - glm::vec2(view.area.offset.x, view.area.offset.y)) {
+          center_(half_ - glm::vec2(view.area.offset.x, view.area.offset.y + band.first_row())) {
         for (const Draw& draw : scene.draws) {
             first_vertex_.push_back(vertices_);
             vertices_ += draw.vertex_count;
         }
+        // Of x, y, w, 1 in world space: what is above the band, and what is below it.
+        const auto row = [&](glm::length_t i) {
+            return glm::vec4(clip_[0][i], clip_[1][i], clip_[2][i], clip_[3][i]);
+        };
+        const auto edge = [&](int y) { return (static_cast<float>(y) - center_.y) / half_.y; };
+        constexpr int kSpare = 2;
+        planes_ = {row(1) - edge(-kSpare) * row(3), edge(height_ + kSpare) * row(3) - row(1)};
+        for (std::size_t i = 0; i < 2; ++i) lengths_[i] = glm::length(glm::vec3(planes_[i]));
         depth_.clear(width_, height_);
     }
 
-    void add(std::uint32_t index) {
-        const SceneChunk& chunk = scene_.chunks[index];
+    /// The chunks' triangles, from near to far; `place` is the chunk's among them.
+    void add(std::uint32_t place, const SceneChunk& chunk) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            if (glm::dot(planes_[i], glm::vec4(chunk.center, 1.0f)) < -chunk.radius * lengths_[i])
+                return;
+        }
         const Draw& draw = scene_.draws[chunk.draw];
         const std::span<const std::uint16_t> corners = scene_.indices.subspan(
             draw.index_offset / sizeof(std::uint16_t) + chunk.first_index, chunk.index_count);
@@ -101,51 +148,21 @@ class Finder {
             std::optional<Candidate> candidate =
                 draw_triangle({&at(i), &at(i + 1), &at(i + 2)}, draw);
             if (!candidate) continue;
-            candidate->first_index = i;
-            candidate->chunk = index;
+            candidate->place = {place, i};
             candidates_.push_back(*candidate);
         }
     }
 
-    ShownTriangles shown() {
-        std::erase_if(candidates_, [&](const Candidate& c) { return is_hidden(c); });
-        ShownTriangles shown;
-        shown.indices.reserve(3 * candidates_.size());
-        for (std::size_t first = 0; first < candidates_.size(); first += kRun) {
-            const std::span run =
-                std::span(candidates_).subspan(first, std::min(kRun, candidates_.size() - first));
-            gather(run);
-            for (const Candidate& candidate : run) append(candidate, shown);
+    /// Of what was added, in that order.
+    std::vector<Place> shown() {
+        std::vector<Place> shown;
+        for (const Candidate& candidate : candidates_) {
+            if (!is_hidden(candidate)) shown.push_back(candidate.place);
         }
         return shown;
     }
 
  private:
-    /// A draw call takes as long as some dozens of triangles: where the order from near to far asks
-    /// for one for every few, those of a draw go together.
-    void gather(std::span<Candidate> run) const {
-        constexpr std::size_t kFew = 32;
-        const auto rank = [&](const Candidate& candidate) {
-            const std::uint32_t draw = scene_.chunks[candidate.chunk].draw;
-            return std::pair(scene_.draws[draw].shading, draw);
-        };
-        std::size_t calls = 0;
-        for (std::size_t i = 1; i < run.size(); ++i) calls += rank(run[i - 1]) != rank(run[i]);
-        if (calls * kFew > run.size()) std::ranges::stable_sort(run, {}, rank);
-    }
-
-    void append(const Candidate& candidate, ShownTriangles& shown) const {
-        const SceneChunk& chunk = scene_.chunks[candidate.chunk];
-        const auto first = static_cast<std::uint32_t>(shown.indices.size());
-        if (shown.ranges.empty() || shown.ranges.back().draw != chunk.draw)
-            shown.ranges.push_back({chunk.draw, first, 0});
-        const std::uint16_t* const corners =
-            scene_.indices.data() + scene_.draws[chunk.draw].index_offset / sizeof(std::uint16_t) +
-            chunk.first_index + candidate.first_index;
-        shown.indices.insert(shown.indices.end(), corners, corners + 3);
-        shown.ranges.back().index_count += 3;
-    }
-
     void see(const glm::vec3& p, SeenCorner& out) const {
         const float x = clip_[0].x * p.x + clip_[1].x * p.y + clip_[2].x * p.z + clip_[3].x;
         const float y = clip_[0].y * p.x + clip_[1].y * p.y + clip_[2].y * p.z + clip_[3].y;
@@ -213,6 +230,7 @@ class Finder {
         // What is hidden now stays so.
         if (depth_.hides(candidate.around, candidate.nearest)) return std::nullopt;
         if (!looks_away && occludes(draw)) depth_.draw(triangle);
+        if (centers.bottom < top_ || centers.top > bottom_) return std::nullopt;
         return candidate;
     }
 
@@ -265,21 +283,93 @@ class Finder {
     DepthBuffer& depth_;
     int width_;  ///< of what is drawn, pixels
     int height_;
+    int top_;  ///< the band's first row of these, and its last
+    int bottom_;
     glm::vec2 half_;    ///< of the picture, pixels
     glm::vec2 center_;  ///< of the picture, pixels from what is drawn
+    std::array<glm::vec4, 2> planes_{};
+    std::array<float, 2> lengths_{};
     std::vector<std::size_t> first_vertex_;
     std::size_t vertices_ = 0;
     std::vector<SeenCorner> seen_;  ///< of the chunk at hand
     std::vector<Candidate> candidates_;
 };
 
+/// Puts triangles together as they are drawn.
+class Gatherer {
+ public:
+    Gatherer(const SceneTriangles& scene, std::span<const std::uint32_t> chunks)
+        : scene_(scene), chunks_(chunks) {}
+
+    ShownTriangles gathered(std::vector<Place> places) const {
+        ShownTriangles shown;
+        shown.indices.reserve(3 * places.size());
+        for (std::size_t first = 0; first < places.size(); first += kRun) {
+            const std::span run =
+                std::span(places).subspan(first, std::min(kRun, places.size() - first));
+            gather(run);
+            for (const Place& place : run) append(place, shown);
+        }
+        return shown;
+    }
+
+ private:
+    const SceneChunk& chunk_of(const Place& place) const {
+        return scene_.chunks[chunks_[place.chunk]];
+    }
+
+    /// A draw call takes as long as some dozens of triangles: where the order from near to far asks
+    /// for one for every few, those of a draw go together.
+    void gather(std::span<Place> run) const {
+        constexpr std::size_t kFew = 32;
+        const auto rank = [&](const Place& place) {
+            const std::uint32_t draw = chunk_of(place).draw;
+            return std::pair(scene_.draws[draw].shading, draw);
+        };
+        std::size_t calls = 0;
+        for (std::size_t i = 1; i < run.size(); ++i) calls += rank(run[i - 1]) != rank(run[i]);
+        if (calls * kFew > run.size()) std::ranges::stable_sort(run, {}, rank);
+    }
+
+    void append(const Place& place, ShownTriangles& shown) const {
+        const SceneChunk& chunk = chunk_of(place);
+        const auto first = static_cast<std::uint32_t>(shown.indices.size());
+        if (shown.ranges.empty() || shown.ranges.back().draw != chunk.draw)
+            shown.ranges.push_back({chunk.draw, first, 0});
+        const std::uint16_t* const corners =
+            scene_.indices.data() + scene_.draws[chunk.draw].index_offset / sizeof(std::uint16_t) +
+            chunk.first_index + place.first_index;
+        shown.indices.insert(shown.indices.end(), corners, corners + 3);
+        shown.ranges.back().index_count += 3;
+    }
+
+    const SceneTriangles& scene_;
+    std::span<const std::uint32_t> chunks_;
+};
+
+/// Of two ordered lists, what is in one of them or in both.
+std::vector<Place> united(const std::vector<Place>& a, const std::vector<Place>& b) {
+    std::vector<Place> all;
+    all.reserve(a.size() + b.size());
+    std::ranges::set_union(a, b, std::back_inserter(all));
+    return all;
+}
+
 }  // namespace
 
 ShownTriangles shown_triangles(const SceneTriangles& scene, std::span<const std::uint32_t> chunks,
-                               const PictureView& view, DepthBuffer& depth) {
-    Finder finder(scene, view, depth);
-    for (const std::uint32_t chunk : chunks) finder.add(chunk);
-    return finder.shown();
+                               const PictureView& view, BandDepths& depths) {
+    const std::vector<Band> bands = bands_of(static_cast<int>(view.area.extent.height));
+    std::vector<std::vector<Place>> shown(bands.size());
+    tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t i) {
+        Finder finder(scene, view, bands[i], depths[i]);
+        for (std::uint32_t place = 0; place < chunks.size(); ++place)
+            finder.add(place, scene.chunks[chunks[place]]);
+        shown[i] = finder.shown();
+    });
+    std::vector<Place> all;
+    for (std::vector<Place>& of_band : shown) all = united(all, of_band);
+    return Gatherer(scene, chunks).gathered(std::move(all));
 }
 
 }  // namespace cw2

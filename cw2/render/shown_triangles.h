@@ -1,6 +1,7 @@
 // Which triangles a picture shows, for devices on which the hidden ones cost most.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -40,11 +41,15 @@ struct PictureView {
     VkRect2D area;  ///< that is drawn, in `extent`
 };
 
+/// What is nearest in each of the bands in which a picture is looked at.
+using BandDepths = std::array<DepthBuffer, 4>;
+
 /// Lists the triangles of `chunks`, opaque ones from near to far before alpha-masked ones, that may
 /// be seen: not those that are beside the picture, look away and are culled, cover no pixel's
 /// centre, or lie behind opaque ones wherever they and a pixel around them would be. Which corner
 /// of a pixel's grid a device's floats are rounded to makes no difference.
+/// Works in bands of the picture, on threads; for any number of them the answer is the same.
 ShownTriangles shown_triangles(const SceneTriangles& scene, std::span<const std::uint32_t> chunks,
-                               const PictureView& view, DepthBuffer& depth);
+                               const PictureView& view, BandDepths& depths);
 
 }  // namespace cw2

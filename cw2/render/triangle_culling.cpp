@@ -52,14 +52,14 @@ std::vector<TriangleCulling::Shown> TriangleCulling::find(const Scene& scene,
         entry ? void(entry->used = ++now_) : missing.push_back(&wanted);
     }
     std::vector<ShownTriangles> found(missing.size());
-    std::vector<DepthBuffer> depths(missing.size());
-    if (!missing.empty()) std::swap(depths[0], depth_);
+    std::vector<BandDepths> depths(missing.size());
+    if (!missing.empty()) std::swap(depths[0], depths_);
     tbb::parallel_for(std::size_t{0}, missing.size(), [&](std::size_t i) {
         found[i] = shown_triangles(
             {scene.positions(), scene.host_indices(), scene.chunks(), scene.draws()},
             missing[i]->chunks, missing[i]->view, depths[i]);
     });
-    if (!missing.empty()) std::swap(depths[0], depth_);
+    if (!missing.empty()) std::swap(depths[0], depths_);
     for (std::size_t i = 0; i < missing.size(); ++i)
         keep(scene, missing[i]->view, std::move(found[i]));
     std::vector<Shown> shown;

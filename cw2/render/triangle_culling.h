@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "cw2/render/depth_buffer.h"
 #include "cw2/render/scene.h"
 #include "cw2/render/shown_triangles.h"
 #include "cw2/vulkan/device.h"
@@ -53,7 +52,7 @@ class TriangleCulling {
     void keep(const Scene& scene, const PictureView& view, ShownTriangles found);
 
     const Device& device_;
-    DepthBuffer depth_;
+    BandDepths depths_;
     std::vector<Entry> entries_;
     std::uint64_t now_ = 0;
 };

@@ -198,8 +198,8 @@ cw2::ShownTriangles shown_of(const Soup& soup, const Picture& picture) {
     const cw2::PictureView view = picture.view();
     cw2::find_visible(soup.chunks, soup.draws, view.clip_from_world, picture.camera.position,
                       chunks);
-    cw2::DepthBuffer depth;
-    return cw2::shown_triangles(soup.triangles(), chunks, view, depth);
+    cw2::BandDepths depths;
+    return cw2::shown_triangles(soup.triangles(), chunks, view, depths);
 }
 
 constexpr VkRect2D kAll{{0, 0}, {kWidth, kHeight}};
