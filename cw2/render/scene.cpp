@@ -1,11 +1,13 @@
 #include "cw2/render/scene.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstring>
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
 #include <span>
@@ -44,19 +46,27 @@ interop::DrawConstants constants_of(const Document& document, const MeshRecord& 
     return constants;
 }
 
-/// On the CPU's memory nothing has to be copied twice.
-Buffer upload_buffer(const Device& device, std::optional<Uploader>& uploader,
+/// Uploads bytes of a file, which need not be in memory twice.
+Buffer upload_buffer(const Device& device, std::optional<Uploader>& uploader, const SceneFile& file,
                      std::span<const std::byte> bytes, VkBufferUsageFlags usage) {
     const std::size_t size = std::max<std::size_t>(bytes.size(), 4);
     if (device.is_cpu()) {
         Buffer buffer = make_buffer(device, size, usage, MemoryUse::upload);
-        std::ranges::copy(bytes, buffer.mapped.begin());
+        constexpr std::size_t kPiece = 2 << 20;
+        const std::size_t pieces = (bytes.size() + kPiece - 1) / kPiece;
+        tbb::parallel_for(std::size_t{0}, pieces, [&](std::size_t i) {
+            const std::size_t first = i * kPiece;
+            const auto piece = bytes.subspan(first, std::min(kPiece, bytes.size() - first));
+            std::memcpy(buffer.mapped.data() + first, piece.data(), piece.size());
+            file.forget(piece);
+        });
         return buffer;
     }
     if (!uploader) uploader.emplace(device);
     Buffer buffer =
         make_buffer(device, size, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::device);
     uploader->write_buffer(buffer.handle.get(), bytes);
+    file.forget(bytes);
     return buffer;
 }
 
@@ -75,8 +85,8 @@ Scene::Scene(const Device& device, SceneFile& file)
     const Document& document = file.document;
     std::optional<Uploader> uploader;
     vertices_ =
-        upload_buffer(device, uploader, document.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
-    indices_ = upload_buffer(device, uploader, std::as_bytes(document.indices),
+        upload_buffer(device, uploader, file, document.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+    indices_ = upload_buffer(device, uploader, file, std::as_bytes(document.indices),
                              VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
     if (uploader) uploader->finish();
     device.name(vertices_.handle.get(), "scene vertices");

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <functional>
 #include <new>
 #include <span>
 #include <string>
@@ -21,7 +22,7 @@ void read(SceneFile& file, std::span<const std::byte> bytes, const std::string& 
     tbb::parallel_for(std::size_t{0}, file.document.textures.size(), [&](std::size_t i) {
         mesh_format::check_payload(file.document, i, name);
         // All of them need not be in memory beside what becomes of them.
-        file.forget(file.document.textures[i]);
+        file.forget(file.document.payload(file.document.textures[i]));
     });
     file.decoded =
         mesh_format::decode(file.document, name, [](std::size_t count, const auto& decode_mesh) {
@@ -33,6 +34,16 @@ void read(SceneFile& file, std::span<const std::byte> bytes, const std::string& 
 }
 
 }  // namespace
+
+void SceneFile::forget(std::span<const std::byte> part) const {
+    if (!mapped || part.empty()) return;
+    // Decoded vertices are elsewhere.
+    const std::span<const std::byte> all = mapped->bytes();
+    const std::less_equal<> at_or_before;
+    if (at_or_before(all.data(), part.data()) &&
+        at_or_before(part.data() + part.size(), all.data() + all.size()))
+        common::forget_mapped(part);
+}
 
 void refuse_for_memory(const std::filesystem::path& path) {
     throw common::FileError(path.string() + ": there is not enough memory to load it");

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,10 +27,8 @@ struct SceneFile {
     Bounds bounds;                     ///< refers to the positions
     SceneStart start;
 
-    /// The payload of a texture is not needed for now.
-    void forget(const mesh_format::TextureRecord& texture) const {
-        if (mapped) common::forget_mapped(document.payload(texture));
-    }
+    /// What is mapped of these bytes is not needed in memory for now.
+    void forget(std::span<const std::byte> part) const;
 };
 
 /// Throws common::FileError or mesh_format::FormatError.

@@ -304,7 +304,7 @@ MergedMaps SceneTextures::maps_of(const Texture& texture) {
 void SceneTextures::forget(const SceneFile& file, const Texture& texture) {
     const MergedMaps maps = maps_of(texture);
     for (const std::uint32_t map : {maps.normal, maps.roughness, maps.metalness}) {
-        if (map != kNoTexture) file.forget(file.document.textures[map]);
+        if (map != kNoTexture) file.forget(file.document.payload(file.document.textures[map]));
     }
 }
 

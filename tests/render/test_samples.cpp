@@ -13,6 +13,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -335,6 +336,29 @@ TEST(TouchedLevels, GiveTheSamePictureAsAll) {
     // The bound is of use: it leaves levels out, and three more are missed from nearly everywhere.
     EXPECT_GE(left_out, 12u);
     EXPECT_GE(changed_without_more, 9u);
+}
+
+TEST(SceneFile, IsWholeWhateverIsForgotten) {
+    const TemporaryFolder folder;
+    // Of some pages.
+    constexpr int kSide = 64;
+    std::ofstream obj(folder / "sheet.obj");
+    for (int i = 0; i < kSide * kSide; ++i) obj << fmt::format("v {} 0 {}\n", i % kSide, i / kSide);
+    for (int i = 1; i < kSide * (kSide - 1); ++i) {
+        if (i % kSide != 0)
+            obj << fmt::format("f {} {} {} {}\n", i, i + 1, i + kSide + 1, i + kSide);
+    }
+    obj.close();
+    // Compressed vertices are decoded: no file has them.
+    for (const std::vector<std::string>& words : {Words{}, Words{"--compress"}}) {
+        const cw2::SceneFile file = cw2::load_scene_file(bake_scene(folder / "sheet.obj", words));
+        for (const auto part : {file.document.vertices, std::as_bytes(file.document.indices)}) {
+            ASSERT_GT(part.size(), 20'000u);
+            const std::vector<std::byte> before(part.begin(), part.end());
+            file.forget(part);
+            EXPECT_TRUE(std::ranges::equal(part, before)) << words.size();
+        }
+    }
 }
 
 TEST(Bench, SaysWhatAPictureTakes) {
