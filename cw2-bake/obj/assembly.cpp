@@ -15,7 +15,6 @@
 #include "common/huge_pages.h"
 #include "common/io.h"
 #include "cw2-bake/base/diagnostics.h"
-#include "cw2-bake/base/raw_vector.h"
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/obj/parser.h"
 #include "cw2-bake/obj/vertex_colors.h"

@@ -3,8 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
-#include <functional>
 #include <new>
 #include <span>
 #include <string>
@@ -36,12 +36,14 @@ void read(SceneFile& file, std::span<const std::byte> bytes, const std::string& 
 }  // namespace
 
 void SceneFile::forget(std::span<const std::byte> part) const {
-    if (!mapped || part.empty()) return;
+    if (!mapped) return;
     // Decoded vertices are elsewhere.
+    const auto address = [](const std::byte* place) {
+        return reinterpret_cast<std::uintptr_t>(place);
+    };
     const std::span<const std::byte> all = mapped->bytes();
-    const std::less_equal<> at_or_before;
-    if (at_or_before(all.data(), part.data()) &&
-        at_or_before(part.data() + part.size(), all.data() + all.size()))
+    if (address(all.data()) <= address(part.data()) &&
+        address(part.data()) + part.size() <= address(all.data()) + all.size())
         common::forget_mapped(part);
 }
 
