@@ -30,14 +30,17 @@ std::size_t TriangleOrder::gather_fan(std::uint16_t vertex,
     std::size_t count = 0;
     const std::size_t end = first_[vertex + 1u];
     for (std::size_t i = first_[vertex]; i < end; ++i) {
-        const std::uint16_t triangle = triangles_[i];
-        const std::uint16_t* const corners = &indices[3 * std::size_t{triangle}];
+        fan_[count].triangle = triangles_[i];
+        count += !done_[triangles_[i]];
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        Blade& blade = fan_[i];
+        const std::uint16_t* const corners = &indices[3 * std::size_t{blade.triangle}];
         const std::size_t corner = corners[0] == vertex ? 0 : corners[1] == vertex ? 1 : 2;
-        const std::uint16_t first = corners[corner == 2 ? 0 : corner + 1];
-        const std::uint16_t last = corners[corner == 0 ? 2 : corner - 1];
-        fan_[count] = {triangle, first, last, false};
-        blades_[first] = static_cast<std::uint16_t>(done_[triangle] ? blades_[first] : count);
-        count += !done_[triangle];
+        blade.first = corners[corner == 2 ? 0 : corner + 1];
+        blade.last = corners[corner == 0 ? 2 : corner - 1];
+        blade.goes_on = false;
+        blades_[blade.first] = static_cast<std::uint16_t>(i);
     }
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t next = blades_[fan_[i].last];
@@ -56,8 +59,10 @@ void TriangleOrder::emit_around(std::uint16_t vertex, std::span<const std::uint1
         time += enters;
     };
     const std::size_t count = gather_fan(vertex, indices);
-    // Those that go on from none are the starts; what is left then goes round.
-    for (std::size_t i = 0; i < 2 * count; ++i) {
+    // Those that go on from none are the starts; what is left then goes round. A triangle with two
+    // equal corners is there twice.
+    std::size_t left = count;
+    for (std::size_t i = 0; i < 2 * count && left > 0; ++i) {
         std::size_t next = i < count ? i : i - count;
         if (done_[fan_[next].triangle] || (fan_[next].goes_on && i < count)) continue;
         use(fan_[next].first);
@@ -67,6 +72,7 @@ void TriangleOrder::emit_around(std::uint16_t vertex, std::span<const std::uint1
             blade = fan_[next];
             done_[blade.triangle] = true;
             result_[result_count_++] = blade.triangle;
+            --left;
             use(vertex);
             use(blade.last);
             recent_[used++] = blade.last;
