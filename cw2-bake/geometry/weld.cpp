@@ -1,6 +1,7 @@
 #include "cw2-bake/geometry/weld.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace bake {
 namespace {
@@ -21,28 +22,26 @@ class VertexMaker {
           overflow_(0) {
         // At most; what is left over is never touched.
         vertices_.resize(scene.corners.size());
-        links_.resize(scene.corners.size());
     }
 
     /// The vertices of corners of one material.
     void number(std::span<const Corner> corners, std::uint32_t material, std::uint32_t* out) {
         FramedVertex* const vertices = vertices_.data();
-        Link* const links = links_.data();
         std::uint32_t* const head = head_.data();
         for (Corner corner : corners) {
             corner.position = positions_[corner.position];
             corner.uv = corner.uv != kAbsent ? corner.uv : absent_uv_;
             int length = 0;
             std::uint32_t i = head[corner.position];
-            for (; i != kNone; i = links[i].next) {
-                if ((links[i].material == material && is_alike(vertices[i].corner, corner)) ||
+            for (; i != kNone; i = link_of(vertices[i]).next) {
+                if ((link_of(vertices[i]).material == material &&
+                     is_alike(vertices[i].corner, corner)) ||
                     ++length == kMaxChain)
                     break;
             }
             if (i == kNone) {
                 i = count_++;
-                links[i] = {head[corner.position], material};
-                vertices[i].corner = corner;
+                vertices[i] = linked(corner, {head[corner.position], material});
                 head[corner.position] = i;
             } else if (length == kMaxChain) {
                 i = overflowing_vertex(corner, material);
@@ -66,8 +65,8 @@ class VertexMaker {
     std::uint32_t overflowing_vertex(const Corner& corner, std::uint32_t material) {
         const auto is_equal = [&](std::uint32_t i) {
             const Corner& other = vertices_[i].corner;
-            return other.position == corner.position && links_[i].material == material &&
-                   is_alike(other, corner);
+            return other.position == corner.position &&
+                   link_of(vertices_[i]).material == material && is_alike(other, corner);
         };
         const glm::vec3& normal = scene_.normals[corner.normal];
         const glm::vec2& uv = scene_.uvs[corner.uv];
@@ -75,8 +74,7 @@ class VertexMaker {
             hash_of(corner.position, normal.x, normal.y, normal.z, uv.x, uv.y, material), count_,
             is_equal);
         if (found != count_) return found;
-        links_[count_].material = material;
-        vertices_[count_].corner = corner;
+        vertices_[count_] = linked(corner, {kNone, material});
         return count_++;
     }
 
@@ -84,12 +82,18 @@ class VertexMaker {
         std::uint32_t next;  ///< vertex at the same position
         std::uint32_t material;
     };
+    /// Lies in the place of the tangent, which is made later.
+    static Link link_of(const FramedVertex& vertex) {
+        return std::bit_cast<Link>(glm::vec2(vertex.tangent));
+    }
+    static FramedVertex linked(const Corner& corner, Link link) {
+        return {corner, glm::vec4(std::bit_cast<glm::vec2>(link), 0.0f, 0.0f)};
+    }
 
     const SourceScene& scene_;
     const FirstEqual& positions_;
     std::uint32_t absent_uv_;
     RawVector<FramedVertex>& vertices_;
-    RawVector<Link> links_;            // by vertex
     std::vector<std::uint32_t> head_;  // by position
     std::uint32_t count_ = 0;
     /// What exceeds kMaxChain at one position; nearly all have few.
