@@ -737,6 +737,7 @@ def check_texture(texture, data):
     whole = whole_size(texture)
     require(texture.size < whole if texture.flags & 4 else texture.size == whole,
             "a texture's texels do not fit its size")
+    require(texture.size * 1000 >= whole, "a texture's compressed texels are implausibly few")
     stored = data[texture.offset:texture.offset + texture.size]
     require(len(stored) == texture.size and checksum(stored) == texture.checksum,
             "is altered: wrong checksum of a texture's texels")

@@ -204,6 +204,7 @@ void check_texture(const Checker& check, const Document& document, std::size_t i
     const std::uint64_t whole = mip_chain_bytes(texture.format, texture.width, texture.height);
     require(texture.flags & kCompressed ? texture.size < whole : texture.size == whole,
             "its texels do not fit its size");
+    require(texture.size * kLargestRatio >= whole, "its compressed texels are implausibly few");
 }
 
 void check_source(const Checker& check, const Document& document, std::size_t i) {

@@ -21,10 +21,6 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-// A small file must not claim all memory. The geometry of a flat grid may shrink to next to
-// nothing; its table of chunks, which is not compressed, is the 200th part of it.
-constexpr std::uint64_t kLargestRatio = 1000;
-
 /// The parts of an encoded section or payload; none where their sizes do not fit it.
 std::vector<Bytes> parts_of(Bytes whole, std::size_t count) {
     std::vector<Bytes> parts;

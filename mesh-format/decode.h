@@ -24,8 +24,8 @@ using Loop = std::function<void(std::size_t count, const std::function<void(std:
 
 /// Decodes an encoded document mesh by mesh, by `loop` or one after the other, and checks the
 /// result, which `document` then refers to; leaves any other as it is. Throws FormatError, which
-/// calls the file `name`, where the sections are damaged, or claim to be more than a thousand times
-/// the size of what is stored of them and of the chunks.
+/// calls the file `name`, where the sections are damaged, or claim to be more than kLargestRatio
+/// times the size of what is stored of them and of the chunks.
 DecodedGeometry decode(Document& document, std::string_view name, const Loop& loop = {});
 
 /// A payload as it is in a plain file.

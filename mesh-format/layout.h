@@ -318,7 +318,9 @@ enum TextureFlags : std::uint32_t {
 /// from the first. Blocks that reach over the right or lower edge hold anything there.
 ///
 /// A compressed one is stored as uint32[], the stored size of each part, then those parts, each a
-/// Zstandard frame of the next kPartBytes of the payload, the last one of what is left.
+/// Zstandard frame of the next kPartBytes of the payload, the last one of what is left. A part
+/// takes the kLargestRatio-th part of what it holds at least: after a frame that is shorter goes a
+/// skippable one, of zeros.
 struct TextureRecord {
     StringRef name;
     TextureFormat format;
@@ -351,6 +353,10 @@ struct SourceRecord {
 };
 
 inline constexpr std::uint64_t kPartBytes = 128 << 10;
+/// What is compressed has at most so many times the bytes that are stored of it (of geometry, with
+/// its chunks), so that a small file cannot claim all memory. The geometry of a flat grid may
+/// shrink to next to nothing; its chunks are the 200th part of it.
+inline constexpr std::uint64_t kLargestRatio = 1000;
 inline constexpr std::uint64_t kMipAlignment = 16;
 inline constexpr float kExactPsnr = 100.0f;
 inline constexpr std::uint32_t kMaxTextureSize = 16'384;

@@ -84,7 +84,6 @@ TEST(CompressedFile, DamageIsSaidOrMakesOtherGeometry) {
     EXPECT_GT(refused, 100u);
 }
 
-/// A large flat mesh shrinks to less than a thousandth.
 /// A file's only texture, of several parts, and its payload.
 struct CompressedTexture {
     CompressedTexture() {
@@ -138,6 +137,32 @@ TEST(CompressedFile, NoiseIsStoredAsItIs) {
     EXPECT_EQ(texture.payload, plain);
 }
 
+/// Whatever it holds, a payload takes what check() asks for, and decodes.
+TEST(CompressedFile, TexelsThatAreEqualNearlyEverywhereArePlausible) {
+    for (const std::size_t odd : {1, 100'000, 100'000'000}) {
+        for (const std::uint32_t size : {31u, 32u, 45u, 1024u, 2048u}) {
+            bake::Texture texture{
+                .format = TextureFormat::r8_unorm, .width = size, .height = size, .payload = {}};
+            texture.payload.resize(mip_chain_bytes(texture.format, size, size), std::byte{9});
+            for (std::size_t i = odd; i < texture.payload.size(); i += odd)
+                texture.payload[i] = std::byte{200};
+            const Bytes plain = texture.payload;
+            bake::compress_payload(texture);
+            ASSERT_EQ(texture.flags, kCompressed);
+            EXPECT_GE(texture.payload.size() * kLargestRatio, plain.size());
+            EXPECT_LE(texture.payload.size(), 40 + plain.size() / 900);
+            const TextureRecord record{.format = texture.format,
+                                       .flags = texture.flags,
+                                       .width = size,
+                                       .height = size,
+                                       .mip_count = full_mip_count(size, size),
+                                       .size = texture.payload.size()};
+            const Document document{.textures = {&record, 1}, .texels = texture.payload};
+            EXPECT_TRUE(std::ranges::equal(decode_payload(document, 0, "the file").bytes, plain));
+        }
+    }
+}
+
 TEST(CompressedFile, DamagedPayloadsAreRefusedOrDecodeToAsMuch) {
     const CompressedTexture whole;
     const auto ends = [&](const CompressedTexture& texture) {
@@ -172,6 +197,7 @@ TEST(CompressedFile, DamagedPayloadsAreRefusedOrDecodeToAsMuch) {
     EXPECT_TRUE(ends(texture));
 }
 
+/// A large flat mesh shrinks to less than a thousandth.
 TEST(CompressedFile, NextToNothingIsPlausible) {
     constexpr std::uint32_t kChunks = 256;
     constexpr std::uint32_t kChunkIndices = 3 * kMaxChunkTriangles;

@@ -188,6 +188,30 @@ TEST(HostileFile, HostileMaterialsAreRefusedInSpiteOfTheirChecksum) {
     expect_refused(kHostileMaterials);
 }
 
+/// No more memory is taken than the stored bytes make plausible.
+TEST(HostileFile, TexelsOfHardlyAnyBytesAreRefused) {
+    const auto complaint_of = [](std::uint64_t size) -> std::string {
+        SmallScene scene;
+        TextureRecord& texture = scene.textures[1];
+        texture.width = texture.height = 1024;
+        texture.mip_count = full_mip_count(1024, 1024);
+        texture.flags = kCompressed;
+        texture.size = size;
+        scene.texels.resize(texture.offset + size);
+        try {
+            check(scene.document(), "the file");
+            return {};
+        } catch (const FormatError& error) {
+            return error.what();
+        }
+    };
+    const std::uint64_t least = mip_chain_bytes(TextureFormat::r8_unorm, 1024, 1024) / 1000 + 1;
+    EXPECT_EQ(complaint_of(least), "");
+    for (const std::uint64_t size : {least - 1, std::uint64_t{15}, std::uint64_t{0}})
+        EXPECT_EQ(complaint_of(size),
+                  "the file: texture 1: its compressed texels are implausibly few");
+}
+
 TEST(HostileFile, EncodedPartsMustFillTheirSections) {
     SmallScene scene;
     scene.encode();
