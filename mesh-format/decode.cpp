@@ -40,6 +40,7 @@ std::vector<Bytes> parts_of(Bytes whole, std::size_t count) {
 struct Workplace {
     std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> zstd{ZSTD_createDCtx(), &ZSTD_freeDCtx};
     Scratch scratch;
+    std::vector<Neighbours> neighbours;
 
     Workplace() {
         if (!zstd) throw std::bad_alloc();
@@ -58,7 +59,6 @@ class Workplaces {
     template <typename Use>
     void with_one(const Use& use) {
         std::unique_ptr<Workplace> workplace = take();
-        workplace->scratch.reset();
         use(*workplace);
         const std::lock_guard lock(mutex_);
         free_.push_back(std::move(workplace));
@@ -83,11 +83,15 @@ bool decode_mesh(const MeshRecord& mesh, Bytes index_part, Bytes vertex_part,
     // Errors are the largest values.
     if (index_size > index_stream_bound(mesh.index_count)) return false;
     Scratch& scratch = workplace.scratch;
+    scratch.reset();
     std::byte* const index_stream = scratch.take<std::byte>(index_size);
-    const std::span neighbours(scratch.take<Neighbours>(mesh.vertex_count), mesh.vertex_count);
+    if (workplace.neighbours.size() < mesh.vertex_count)
+        workplace.neighbours.resize(mesh.vertex_count);
+    const std::span neighbours(workplace.neighbours.data(), mesh.vertex_count);
     if (!workplace.unwrap(index_part, index_stream, index_size) ||
         !decode_indices({index_stream, index_size}, indices, neighbours, scratch))
         return false;
+    scratch.reset();
     const std::size_t vertex_size = vertex_stream_bytes(mesh);
     std::byte* const vertex_stream = scratch.take<std::byte>(vertex_size);
     return workplace.unwrap(vertex_part, vertex_stream, vertex_size) &&

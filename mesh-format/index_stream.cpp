@@ -39,8 +39,8 @@ class Triangles {
  public:
     Triangles(std::span<Neighbours> neighbours, Scratch& scratch)
         : neighbours_(neighbours),
-          places_(scratch.take<Place>(neighbours.size())),
-          covered_(scratch.take<Place>(neighbours.size())) {
+          places_(scratch.take<Place>(2 * neighbours.size())),
+          covered_(places_ + neighbours.size()) {
         places_[0].set(0, 0);  // where a stream may start
     }
 

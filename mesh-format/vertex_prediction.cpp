@@ -109,9 +109,9 @@ std::int64_t number(const std::byte* position, std::size_t axis) {
 
 }  // namespace
 
-std::vector<Normal> sum_normals(std::span<const std::uint16_t> indices, std::uint32_t vertex_count,
-                                const std::byte* positions, std::size_t stride) {
-    std::vector<Normal> sums(vertex_count);
+void sum_normals(std::span<const std::uint16_t> indices, const std::byte* positions,
+                 std::size_t stride, std::span<Normal> sums) {
+    std::ranges::fill(sums, Normal{});
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         const std::byte* const p[] = {positions + indices[i] * stride,
                                       positions + indices[i + 1] * stride,
@@ -132,7 +132,6 @@ std::vector<Normal> sum_normals(std::span<const std::uint16_t> indices, std::uin
             }
         }
     }
-    return sums;
 }
 
 template <FrameForm kForm>
@@ -142,15 +141,15 @@ void FrameCode<kForm>::rebased(const FrameDigits& frame, std::uint32_t largest, 
         others = frame.others;
         return;
     }
+    // No branch on which they are: no one can predict it.
     int q[4];
-    for (std::uint32_t i = 0, k = 0; i < 4; ++i)
-        q[i] = i == from ? kOne : ratio_of<kForm>(frame.others[k++]);
+    for (std::uint32_t k = 0; k < 3; ++k) q[k + (k >= from)] = ratio_of<kForm>(frame.others[k]);
+    q[from] = kOne;
     // It is not 0 where the two are neighbours on a smooth surface.
     const int divisor = q[largest] == 0 ? 1 : q[largest];
-    for (std::uint32_t i = 0, k = 0; i < 4; ++i) {
-        if (i == largest) continue;
-        const int ratio = std::clamp(q[i] * kOne / divisor, -kOne, kOne);
-        others[k++] = static_cast<std::int16_t>(digit_of<kForm>(ratio));
+    for (std::uint32_t k = 0; k < 3; ++k) {
+        const int ratio = std::clamp(q[k + (k >= largest)] * kOne / divisor, -kOne, kOne);
+        others[k] = static_cast<std::int16_t>(digit_of<kForm>(ratio));
     }
 }
 

@@ -16,11 +16,10 @@ namespace mesh_format {
 /// A direction, of any length.
 using Normal = std::array<std::int64_t, 3>;
 
-/// For each of `vertex_count` vertices, the sum of its triangles' normals, each as long as two
-/// times the triangle's area, modulo 2^64; of positions in the quantised form, `stride` bytes
-/// apart.
-std::vector<Normal> sum_normals(std::span<const std::uint16_t> indices, std::uint32_t vertex_count,
-                                const std::byte* positions, std::size_t stride);
+/// Sets for each vertex the sum of its triangles' normals, each as long as two times the
+/// triangle's area, modulo 2^64; of positions in the quantised form, `stride` bytes apart.
+void sum_normals(std::span<const std::uint16_t> indices, const std::byte* positions,
+                 std::size_t stride, std::span<Normal> sums);
 
 /// One for each component of a quaternion but the largest.
 using Digits = std::array<std::int16_t, 3>;

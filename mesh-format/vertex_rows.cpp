@@ -11,13 +11,14 @@ namespace mesh_format {
 
 namespace {
 
-/// The numbers of a vertex: position, UV, digits. Registers of all processors hold as many.
+/// The numbers of a vertex: position, digits, UV. Registers of all processors hold as many.
 using Row = std::uint16_t __attribute__((vector_size(16)));
 using SignedRow = std::int16_t __attribute__((vector_size(16)));
 using Plane = std::uint8_t __attribute__((vector_size(16)));
 
 constexpr std::size_t kNumbers = 8;
-constexpr std::size_t kFirstDigit = 5;
+constexpr std::size_t kFirstDigit = 3;
+constexpr std::size_t kPartner = 5;
 constexpr std::size_t kBlock = 16;  // vertices
 
 /// 0, 1, 2, 3 to 0, -1, 1, -2.
@@ -40,7 +41,7 @@ void transpose(std::array<Row, kNumbers>& rows) {
     }
 }
 
-template <FrameForm kForm, bool kHasPartner>
+template <FrameForm kForm, FrameModel kModel>
 class Rows {
  public:
     Rows(std::size_t count, std::span<const Neighbours> neighbours, Scratch& scratch)
@@ -48,30 +49,40 @@ class Rows {
           neighbours_(neighbours),
           rows_(scratch.take<Row>(count)),
           tops_(scratch.take<std::uint8_t>(count)),
-          partners_(kHasPartner ? scratch.take<std::uint16_t>(count) : nullptr) {}
+          partners_(kHasPartner ? scratch.take<std::uint16_t>(count) : nullptr),
+          normals_(kHasNormals ? scratch.take<Normal>(count) : nullptr) {}
 
-    void decode(const std::byte* planes, std::byte* out) {
+    void decode(const std::byte* planes, std::span<const std::uint16_t> indices, std::byte* out) {
         const std::byte* const tops = planes + kTopPlane * count_;
         for (std::size_t first = 0; first < count_; first += kBlock) {
             const std::size_t size = std::min(kBlock, count_ - first);
             std::array<Row, kBlock> differences;
             read(planes, first, size, differences);
-            for (std::size_t i = 0; i < size; ++i) {
-                const auto change = std::to_integer<std::uint8_t>(tops[first + i]);
-                add(first + i, differences[i], change, out + (first + i) * kStride);
+            for (std::size_t i = first; i < first + size; ++i) {
+                if constexpr (kHasNormals)
+                    add_place(i, differences[i - first], out + i * kStride);
+                else
+                    add(i, differences[i - first], to_top(tops[i]), out + i * kStride);
             }
+        }
+        if constexpr (kHasNormals) {
+            sum_normals(indices, out, kStride, {normals_, count_});
+            for (std::size_t i = 0; i < count_; ++i)
+                add_frame(i, to_top(tops[i]), out + i * kStride);
         }
     }
 
  private:
     using Code = FrameCode<kForm>;
-    static constexpr std::size_t kDigits = kHasPartner ? 2 : 3;  // in a row
+    static constexpr bool kHasPartner = kModel != FrameModel::neighbours;
+    static constexpr bool kHasNormals = kModel == FrameModel::x_tangent_of_positions;
+    static constexpr std::size_t kDigits = kHasPartner ? 2 : 3;  // of a row that are predicted
     static constexpr std::size_t kStride =
         vertex_layout({PositionForm::quantised, kForm, UvForm::quantised, ColorForm::none}).stride;
     static constexpr std::size_t kTopPlane = 10;
     // Of each number, its low and its high byte.
     static constexpr std::array<std::array<std::size_t, 2>, kNumbers> kPlanes{
-        {{0, 3}, {1, 4}, {2, 5}, {6, 8}, {7, 9}, {11, 14}, {12, 15}, {13, 16}}};
+        {{0, 3}, {1, 4}, {2, 5}, {11, 14}, {12, 15}, {13, 16}, {6, 8}, {7, 9}}};
 
     /// The differences of `size` vertices.
     void read(const std::byte* planes, std::size_t first, std::size_t size,
@@ -100,43 +111,80 @@ class Rows {
         std::ranges::copy(high, out.begin() + kNumbers);
     }
 
-    void add(std::size_t i, Row difference, std::uint8_t change, std::byte* out) {
-        const std::uint16_t partner_difference = difference[7];
-        if (kHasPartner) difference[7] = 0;
-        Row row = difference;
-        std::uint8_t top = change;
-        unsigned differs = 1;
-        if (i > 0) [[likely]] {
-            const Neighbours& at = neighbours_[i];
-            // In this order: mostly b is the vertex before, for which the others need not wait.
-            row = row + rows_[at.a] - rows_[at.c] + rows_[at.b];
-            const std::uint8_t before = tops_[at.a];
-            top ^= before;
-            differs = change | (tops_[at.b] ^ before) | (tops_[at.c] ^ before);
+    static std::uint8_t to_top(std::byte byte) { return std::to_integer<std::uint8_t>(byte); }
+
+    Row sum(std::size_t i, const Row& difference) const {
+        if (i == 0) [[unlikely]]
+            return difference;
+        // In this order: mostly b is the vertex before, for which the others need not wait.
+        const Neighbours& at = neighbours_[i];
+        return difference + rows_[at.a] - rows_[at.c] + rows_[at.b];
+    }
+
+    /// Whether a, b, and c have other largest components than vertex i.
+    bool set_top(std::size_t i, std::uint8_t change) {
+        if (i == 0) [[unlikely]] {
+            tops_[0] = change;
+            return true;
         }
-        const std::uint32_t largest = top & 3u;
-        if ((differs & 3u) != 0 || !reduce(row)) [[unlikely]] {
+        const Neighbours& at = neighbours_[i];
+        const std::uint8_t before = tops_[at.a];
+        tops_[i] = before ^ change;
+        return ((change | (tops_[at.b] ^ before) | (tops_[at.c] ^ before)) & 3u) != 0;
+    }
+
+    void add(std::size_t i, Row difference, std::uint8_t change, std::byte* out) {
+        const std::uint16_t partner_difference = difference[kPartner];
+        if (kHasPartner) difference[kPartner] = 0;
+        Row row = sum(i, difference);
+        const bool differs = set_top(i, change);
+        const std::uint8_t top = tops_[i];
+        if (differs || !reduce(row)) [[unlikely]] {
             Digits expected;
-            expect(i, largest, (differs & 3u) != 0, expected);
-            set_digits(row, expected, largest, difference);
+            expect(i, top & 3u, differs, expected);
+            set_digits(row, expected, top & 3u, difference);
         }
         rows_[i] = row;
-        tops_[i] = top;
-        if constexpr (kHasPartner) {
-            row[7] = digit(Code::of_x_tangent(row[5], row[6]), partner_difference);
-            partners_[i] = row[7];
-        }
+        if constexpr (kHasPartner)
+            partners_[i] = row[kPartner] = partner_of(row, partner_difference);
         put(row, top, out);
+    }
+
+    /// Position and UV; leaves the digits' differences in the row.
+    void add_place(std::size_t i, const Row& difference, std::byte* out) {
+        constexpr Row kDigitsOnly{0, 0, 0, 0xFFFF, 0xFFFF, 0xFFFF, 0, 0};
+        rows_[i] = (sum(i, difference) & ~kDigitsOnly) | (difference & kDigitsOnly);
+        put(rows_[i], 0, out);
+    }
+
+    /// The frame, once the normals are known.
+    void add_frame(std::size_t i, std::uint8_t change, std::byte* out) {
+        const bool differs = set_top(i, change);
+        const std::uint32_t largest = tops_[i] & 3u;
+        Digits expected;
+        if (largest == 0 || largest == 3)
+            Code::of_normal(normals_[i], largest, expected);
+        else
+            expect(i, largest, differs, expected);
+        Row row = rows_[i];
+        set_digits(row, expected, largest, row);
+        partners_[i] = row[kPartner] = partner_of(row, row[kPartner]);
+        rows_[i] = row;
+        put(row, tops_[i], out);
+    }
+
+    static std::uint16_t partner_of(const Row& row, std::uint16_t difference) {
+        return digit(Code::of_x_tangent(row[kFirstDigit], row[kFirstDigit + 1]), difference);
     }
 
     /// Each digit of a sum modulo the number of levels; false where that is too far.
     static bool reduce(Row& row) {
         if constexpr (Code::kWide) {
-            row &= Row{0xFFFF, 0xFFFF, 0xFFFF, 0xFFFF, 0xFFFF, 0x7FFF, 0x7FFF, 0x7FFF};
+            row &= Row{0xFFFF, 0xFFFF, 0xFFFF, 0x7FFF, 0x7FFF, 0x7FFF, 0xFFFF, 0xFFFF};
             return true;
         } else {
             constexpr std::int16_t kLevels = Code::kLevels;
-            const SignedRow levels{0, 0, 0, 0, 0, kLevels, kLevels, kLevels};
+            const SignedRow levels{0, 0, 0, kLevels, kLevels, kLevels, 0, 0};
             SignedRow sum = reinterpret_cast<SignedRow>(row);
             // Of three digits and a difference.
             for (int round = 0; round < 2; ++round) {
@@ -164,7 +212,7 @@ class Rows {
     }
 
     static void set_digits(Row& row, const Digits& expected, std::uint32_t largest,
-                           const Row& difference) {
+                           Row difference) {
         for (std::size_t k = 0; k < kDigits; ++k) {
             const std::size_t lane = kFirstDigit + k;
             row[lane] = digit(expected[place(largest, k)], difference[lane]);
@@ -187,26 +235,41 @@ class Rows {
         return result;
     }
 
+    /// Whether the digits are those of the second, third and first component but the largest.
+    static bool are_turned(std::uint32_t largest) { return kHasPartner && partner(largest) == 0; }
+
     /// Where among the others the digit is that is coded as number k.
     static std::size_t place(std::uint32_t largest, std::size_t k) {
-        if (!kHasPartner || partner(largest) != 0) return k;
-        return k == 2 ? 0 : k + 1;
+        return (k + are_turned(largest)) % 3;
     }
 
     static void put(const Row& row, std::uint8_t top, std::byte* out) {
-        const bool turned = kHasPartner && partner(top & 3u) == 0;
+        if constexpr (Code::kWide && !kHasPartner) {
+            const Row vertex = row | kTopBits[top & 7u];
+            std::memcpy(out, &vertex, sizeof vertex);
+            return;
+        }
+        std::array<std::uint64_t, 2> words;
+        std::memcpy(&words, &row, sizeof words);
+        const std::uint64_t digits[] = {words[0] >> 48, words[1] & 0xFFFF, words[1] >> 16 & 0xFFFF};
+        // No branch on what no one can predict.
+        const bool turned = are_turned(top & 3u);
+        const std::uint64_t first = turned ? digits[2] : digits[0];
+        const std::uint64_t second = turned ? digits[0] : digits[1];
+        const std::uint64_t third = turned ? digits[1] : digits[2];
+        const std::uint64_t position = words[0] & 0xFFFF'FFFF'FFFF;
+        const std::uint64_t uv = words[1] >> 32;
         if constexpr (Code::kWide) {
-            Row digits = turned ? __builtin_shufflevector(row, row, 0, 1, 2, 7, 5, 6, 3, 4)
-                                : __builtin_shufflevector(row, row, 0, 1, 2, 5, 6, 7, 3, 4);
-            digits |= kTopBits[top & 7u];
-            std::memcpy(out, &digits, sizeof digits);
+            const std::uint64_t bits[] = {top >> 2u & 1u, top & 1u, top >> 1u & 1u};
+            words[0] = position | (first | bits[0] << 15) << 48;
+            words[1] = second | bits[1] << 15 | (third | bits[2] << 15) << 16 | uv << 32;
+            std::memcpy(out, &words, sizeof words);
         } else {
-            const std::uint32_t code =
-                turned ? ((top * 811u + row[6]) * 811u + row[5]) * 811u + row[7]
-                       : ((top * 811u + row[7]) * 811u + row[6]) * 811u + row[5];
-            std::memcpy(out, &row, 6);
-            std::memcpy(out + 6, &code, sizeof code);
-            const Row uv = __builtin_shufflevector(row, row, 3, 4, 0, 0, 0, 0, 0, 0);
+            constexpr std::uint64_t kLevels = Code::kLevels;
+            const auto code = static_cast<std::uint32_t>(
+                ((top * kLevels + third) * kLevels + second) * kLevels + first);
+            std::memcpy(out, &position, 8);  // two bytes more than it has
+            std::memcpy(out + 6, &code, 4);
             std::memcpy(out + 10, &uv, 4);
         }
     }
@@ -227,22 +290,32 @@ class Rows {
     Row* rows_;
     std::uint8_t* tops_;
     std::uint16_t* partners_;  // the digits that the others of a vertex give
+    Normal* normals_;          // if frames are predicted from them
 };
 
 }  // namespace
 
-void decode_rows(const MeshRecord& mesh, FrameModel model, std::span<const Neighbours> neighbours,
-                 const std::byte* planes, std::byte* vertices, Scratch& scratch) {
-    const auto decode = [&]<FrameForm kForm>() {
-        if (model == FrameModel::neighbours)
-            Rows<kForm, false>(mesh.vertex_count, neighbours, scratch).decode(planes, vertices);
-        else
-            Rows<kForm, true>(mesh.vertex_count, neighbours, scratch).decode(planes, vertices);
+void decode_rows(const MeshRecord& mesh, FrameModel model, std::span<const std::uint16_t> indices,
+                 std::span<const Neighbours> neighbours, const std::byte* planes,
+                 std::byte* vertices, Scratch& scratch) {
+    const auto decode = [&]<FrameForm kForm, FrameModel kModel>() {
+        Rows<kForm, kModel>(mesh.vertex_count, neighbours, scratch)
+            .decode(planes, indices, vertices);
+    };
+    const auto decode_form = [&]<FrameForm kForm>() {
+        switch (model) {
+            case FrameModel::neighbours:
+                return decode.template operator()<kForm, FrameModel::neighbours>();
+            case FrameModel::x_tangent:
+                return decode.template operator()<kForm, FrameModel::x_tangent>();
+            case FrameModel::x_tangent_of_positions:
+                return decode.template operator()<kForm, FrameModel::x_tangent_of_positions>();
+        }
     };
     if (mesh.forms.frame == FrameForm::quat48)
-        decode.operator()<FrameForm::quat48>();
+        decode_form.operator()<FrameForm::quat48>();
     else
-        decode.operator()<FrameForm::quat32>();
+        decode_form.operator()<FrameForm::quat32>();
 }
 
 }  // namespace mesh_format

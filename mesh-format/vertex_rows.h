@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "mesh-format/index_stream.h"
@@ -9,16 +10,16 @@
 
 namespace mesh_format {
 
-/// Whether decode_rows() is for these: vertices of eight numbers of 16 bits, none predicted from
-/// what comes after it.
-constexpr bool are_rows(const VertexForms& forms, FrameModel model) {
+/// Whether vertices of these forms are rows of eight numbers of 16 bits.
+constexpr bool are_rows(const VertexForms& forms) {
     return forms.position == PositionForm::quantised && forms.uv == UvForm::quantised &&
            (forms.frame == FrameForm::quat48 || forms.frame == FrameForm::quat32) &&
-           forms.color == ColorForm::none && model != FrameModel::x_tangent_of_positions;
+           forms.color == ColorForm::none;
 }
 
 /// What decode_vertices() does, with the stream's planes.
-void decode_rows(const MeshRecord& mesh, FrameModel model, std::span<const Neighbours> neighbours,
-                 const std::byte* planes, std::byte* vertices, Scratch& scratch);
+void decode_rows(const MeshRecord& mesh, FrameModel model, std::span<const std::uint16_t> indices,
+                 std::span<const Neighbours> neighbours, const std::byte* planes,
+                 std::byte* vertices, Scratch& scratch);
 
 }  // namespace mesh_format

@@ -268,8 +268,10 @@ void with_frames(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
                  std::span<const Neighbours> neighbours, Use use) {
     const std::size_t stride = vertex_layout(mesh.forms).stride;
     std::vector<Normal> normals;
-    if (model == FrameModel::x_tangent_of_positions)
-        normals = sum_normals(indices, mesh.vertex_count, vertices, stride);
+    if (model == FrameModel::x_tangent_of_positions) {
+        normals.resize(mesh.vertex_count);
+        sum_normals(indices, vertices, stride, normals);
+    }
     const auto frames = [&]<FrameForm kForm>() {
         switch (model) {
             case FrameModel::neighbours:
@@ -343,8 +345,8 @@ bool decode_vertices(const MeshRecord& mesh, std::span<const std::uint16_t> indi
     const auto model = static_cast<FrameModel>(stream[0]);
     if (!allows(mesh.forms, model)) return false;
     const std::byte* planes = stream + 1;
-    if (are_rows(mesh.forms, model)) {
-        decode_rows(mesh, model, neighbours, planes, vertices, scratch);
+    if (are_rows(mesh.forms)) {
+        decode_rows(mesh, model, indices, neighbours, planes, vertices, scratch);
         return true;
     }
     for_each_words(mesh.forms, neighbours, [&](auto part, std::uint32_t offset) {

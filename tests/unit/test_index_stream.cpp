@@ -133,6 +133,17 @@ TEST(IndexStream, IsThatOfTheFormat) {
         {{0, 1, 2, 2, 1, 3, 2, 3, 4},
          bytes({0xF0, 0x08, 0x00}),
          {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 1, 1, 0}, {2, 1, 0, 0}, {2, 3, 1, 0}}},
+        // At 0 two parts meet, so it lies on the border twice: between 3 and 4, and, once that is
+        // closed, between 6 and 1.
+        {{0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 0, 4, 0, 3, 0, 6, 1},
+         bytes({0xF0, 0x00, 0xF0, 0x04, 0x02, 0x11, 0x00, 0x00}),
+         {{0, 0, 0, 0},
+          {0, 0, 0, 0},
+          {0, 1, 1, 0},
+          {0, 2, 1, 0},
+          {3, 3, 3, 0},
+          {4, 4, 4, 0},
+          {4, 5, 5, 0}}},
         // No edge in common: from 3, the number 3 (+3), to 0 (-3), to the next.
         {{0, 1, 2, 0, 4, 3},
          bytes({0xF0, 0xF8, 0x06, 0x05, 0x00, 0x00}),
@@ -197,6 +208,8 @@ TEST(IndexStream, OtherSizesAreRefused) {
         EXPECT_FALSE(decoded(longer, indices.size(), 81).sound);
     }
     EXPECT_FALSE(decoded(stream, indices.size(), 80).sound);
+    // The next two vertices, of which there is one.
+    EXPECT_FALSE(decoded(bytes({0xF3}), 3, 1).sound);
 }
 
 }  // namespace

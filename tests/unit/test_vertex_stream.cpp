@@ -177,8 +177,8 @@ TEST(VertexStream, FramesAreForeseen) {
                                               std::uint16_t(random() % 2000)};
             std::memcpy(&vertices[v * std::size_t{layout.stride}], position, sizeof position);
         }
-        const auto normals =
-            sum_normals(indices, mesh.vertex_count, vertices.data(), layout.stride);
+        std::vector<Normal> normals(mesh.vertex_count);
+        sum_normals(indices, vertices.data(), layout.stride, normals);
         for (std::uint16_t v = 0; v < mesh.vertex_count; ++v) {
             const TangentFrame frame{
                 {1.0f, 0.0f, 0.0f},
