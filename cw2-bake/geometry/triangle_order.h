@@ -47,7 +47,8 @@ class TriangleOrder {
     Numbers<kMaxCorners> left_;             // by vertex, its triangles that are not ordered yet
     Numbers<kMaxCorners> entered_;          // by vertex, when it entered the cache
     std::array<bool, kMaxTriangles> done_;  // by triangle
-    std::array<Blade, kMaxTriangles> fan_;  // around a vertex, those that were not done
+    // Around a vertex, those that were not done; at each corner that the vertex is.
+    std::array<Blade, kMaxCorners> fan_;
     Numbers<kMaxCorners> blades_;      // by vertex, which of the fan starts with it, if one does
     Numbers<kMaxCorners + 1> recent_;  // vertices used, the last one last
     std::size_t recent_count_ = 0;
