@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
 # Bakes the same OBJ with cw2-bake, with npm's gltfpack (WebAssembly) and, where they are installed,
-# with a native gltfpack (Debian's 0.18 makes no tangents) and Filament's filamesh (libfilament-tools;
-# half-float positions, tangent frames in 8 bytes), by turns, geometry only, and prints medians and
-# ratios: wall and CPU seconds, peak memory, bytes written; then how far the frames of each are from
-# MikkTSpace's (bench_frames), and what ten times the triangles cost.
+# with a native gltfpack and Filament's filamesh (libfilament-tools; half-float positions, tangent
+# frames in 8 bytes), by turns, geometry only, and prints medians and ratios: wall and CPU seconds,
+# peak memory, bytes written; then how far the frames of each are from MikkTSpace's (bench_frames),
+# and what ten times the triangles cost.
+# Debian's gltfpack (0.18, 0.22) makes no tangents. What a native one that does would take is
+# estimated: as much less than npm's as it takes less than npm's of its own version.
 # Usage: tests/bench/bench_bake.sh [OBJ...]    default: the demo scene and a grid of 1 M triangles
-# RUNS=N sets how often each runs [5]. Wants node, npm and GNU time. A benchmark, no test.
+# RUNS=N sets how often each runs [5]; NATIVE=COMMAND a gltfpack that is not on the PATH, maybe one
+# that its loader starts. Wants node, npm and GNU time. A benchmark, no test.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -17,7 +20,13 @@ if [[ ! -d $work/node_modules/gltfpack ]]; then
     npm install --silent --prefix "$work" gltfpack@1.3.0
 fi
 gltfpack=(node "$work/node_modules/gltfpack/cli.js")
-native=$(command -v gltfpack || true)
+read -ra native <<<"${NATIVE:-$(command -v gltfpack || true)}"
+if [[ ${#native[@]} -gt 0 ]]; then
+    version=$("${native[@]}" -v | awk '{ print $2 }')
+    [[ -d $work/$version/node_modules ]] ||
+        npm install --silent --prefix "$work/$version" "gltfpack@$version.0"
+    twin=(node "$work/$version/node_modules/gltfpack/cli.js")
+fi
 filamesh=$(command -v filamesh || true)
 
 # make_grid SIDE FILE: a wavy sheet of 2 * SIDE^2 triangles with UVs and normals.
@@ -75,15 +84,31 @@ ratio() {
     }'
 }
 
+# estimate KIND: ours beside a native gltfpack that makes tangents.
+estimate() {
+    local column times=()
+    for column in 1 2; do
+        times+=("$(median "$1" $column)" "$(median "$1.peer" $column)" \
+            "$(median "$1.native" $column)" "$(median "$1.twin" $column)")
+    done
+    awk -v t="${times[*]}" 'BEGIN {
+        split(t, s)
+        printf "  %-16s %9.3f %9.3f   of an estimate for %.3f s, %.3f of CPU\n", "ours / native -gt",
+            s[1] * s[4] / (s[2] * s[3]), s[5] * s[8] / (s[6] * s[7]), s[2] * s[3] / s[4], s[6] * s[7] / s[8]
+    }'
+}
+
 # compare TITLE KIND: one line a program, then the ratios.
 compare() {
     printf '%-18s %9s %9s %9s %12s\n' "$1" 'wall s' 'CPU s' 'MiB' 'bytes'
     row cw2-bake "$2"
     row 'npm gltfpack' "$2.peer"
-    [[ -z $native ]] || row 'native gltfpack' "$2.native"
+    [[ ${#native[@]} -eq 0 ]] || row "native $version" "$2.native"
+    [[ ${#native[@]} -eq 0 ]] || row "npm $version" "$2.twin"
     [[ -z $filamesh ]] || row filamesh "$2.filamesh"
     ratio 'ours / npm' "$2" "$2.peer"
-    [[ -z $native ]] || ratio 'ours / native' "$2" "$2.native"
+    [[ ${#native[@]} -eq 0 ]] || ratio 'ours / native' "$2" "$2.native"
+    [[ ${#native[@]} -eq 0 ]] || estimate "$2"
     [[ -z $filamesh ]] || ratio 'ours / filamesh' "$2" "$2.filamesh"
 }
 
@@ -101,8 +126,12 @@ turn() {
         -o "$work/ours.$kind.cw2mesh" "${ours[@]}"
     measure "$kind.peer" "$work/theirs.glb" "${gltfpack[@]}" -i "$scene" -o "$work/theirs.glb" -gt \
         -kv -tr "$@"
-    [[ -z $native ]] || measure "$kind.native" "$work/theirs.glb" "$native" -i "$scene" \
-        -o "$work/theirs.glb" -kv -tr "$@"
+    if [[ ${#native[@]} -gt 0 ]]; then
+        measure "$kind.native" "$work/theirs.glb" "${native[@]}" -i "$scene" \
+            -o "$work/theirs.glb" -kv -tr "$@"
+        measure "$kind.twin" "$work/theirs.glb" "${twin[@]}" -i "$scene" \
+            -o "$work/theirs.glb" -kv -tr "$@"
+    fi
     local packed=(-c)
     [[ $# -gt 0 ]] || packed=()
     [[ -z $filamesh ]] || measure "$kind.filamesh" "$work/theirs.filamesh" "$filamesh" "${packed[@]}" \
