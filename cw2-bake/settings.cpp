@@ -64,7 +64,7 @@ void add_options(CLI::App& app, Settings& settings) {
         {{"bc", TextureMode::bc}, {"lossless", TextureMode::lossless}, {"none", TextureMode::none}},
         "how textures are stored [bc]");
     app.add_flag("--compress", settings.compress,
-                 "store geometry and textures in fewer bytes, without loss");
+                 "store the same geometry and nearly the same textures in fewer bytes");
     app.add_option("--threads", settings.threads, "threads to use [one a processor]")
         ->check(CLI::Range(1, 1024).description(""))
         ->type_name("N");

@@ -34,6 +34,7 @@ struct Comparison {
     bool same_size = true;
     double share = 0.0;    ///< of the pixels beyond the tolerance
     double largest = 0.0;  ///< difference of a channel
+    double square = 0.0;   ///< of the differences, the mean over all channels
 };
 
 /// Infinite where one of the two is no number.
@@ -56,7 +57,9 @@ Comparison compare(const Picture& expected, const Picture& actual, double tolera
     for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
         double worst = 0.0;
         for (std::size_t i = pixel * channels; i < (pixel + 1) * channels; ++i) {
-            worst = std::max(worst, difference(expected.samples[i], actual.samples[i]));
+            const double apart = difference(expected.samples[i], actual.samples[i]);
+            worst = std::max(worst, apart);
+            result.square += apart * apart / static_cast<double>(expected.samples.size());
         }
         if (worst > tolerance) ++beyond;
         result.largest = std::max(result.largest, worst);
@@ -110,8 +113,9 @@ int run(const Settings& settings) {
         found.same_size
             ? fmt::format(
                   "{:.3f} % of the pixels differ by more than {} (allowed: {:.3f} %); "
-                  "largest difference {:.4f}",
-                  100.0 * found.share, settings.tolerance, 100.0 * settings.share, found.largest)
+                  "largest difference {:.4f}; {:.2f} dB apart",
+                  100.0 * found.share, settings.tolerance, 100.0 * settings.share, found.largest,
+                  -10.0 * std::log10(found.square))
             : fmt::format("size {}x{}x{}, expected {}x{}x{}", actual.width, actual.height,
                           actual.channels, expected.width, expected.height, expected.channels);
     fmt::print("{}: {}\n", settings.actual.string(), finding);
