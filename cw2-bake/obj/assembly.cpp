@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 #include "common/io.h"
 #include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/base/text_lines.h"
+#include "cw2-bake/obj/mending.h"
 #include "cw2-bake/obj/parser.h"
 #include "cw2-bake/obj/vertex_colors.h"
 
@@ -56,27 +56,8 @@ std::span<const Corner> corners_of(const ObjChunk& chunk) {
     return {reinterpret_cast<const Corner*>(chunk.triangles.data()), chunk.triangles.size() * 3};
 }
 
-std::size_t end_of(const ObjPolygon& polygon) {
-    return std::size_t{polygon.first_triangle} + polygon.corner_count - 2;
-}
-
 ObjCounts counts_of(const SourceScene& scene) {
     return {count32(scene.positions), count32(scene.uvs), count32(scene.normals)};
-}
-
-/// Ranges that touch become one.
-void add_range(std::vector<TriangleRange>& ranges, TriangleRange range) {
-    if (!ranges.empty() && ranges.back().end >= range.begin)
-        ranges.back().end = std::max(ranges.back().end, range.end);
-    else
-        ranges.push_back(range);
-}
-
-void add_ranges(std::vector<TriangleRange>& ranges, const std::vector<TriangleRange>& more) {
-    std::vector<TriangleRange> all = std::exchange(ranges, {});
-    all.insert(all.end(), more.begin(), more.end());
-    std::ranges::sort(all, {}, &TriangleRange::begin);
-    for (const TriangleRange& range : all) add_range(ranges, range);
 }
 
 /// Takes the chunks in the order of the text.
@@ -304,62 +285,17 @@ void Assembly::warn_of_missing(ObjAttribute attribute, std::size_t count,
                                   is_normal ? "made" : "0 is used", why)});
 }
 
-/// Makes what is no number, or not there, absent.
 template <typename T>
 void Assembly::mend(ObjAttribute attribute, std::uint32_t Corner::*index,
                     std::vector<T>& elements) {
-    struct Missing {
-        std::size_t count = 0, first_triangle = 0;
-        std::vector<TriangleRange> ranges{};
-    };
-    const auto& polygons = contents_.polygons;
-    auto& corners = contents_.scene.corners;
-    const std::vector<std::uint32_t>& bad = bad_[attribute];
-    const std::uint32_t element_count = count32(elements);
-    const bool all_in_range = !has_invalid_ && max_index_[attribute] <= element_count;
-    // Nearly all corners are good, and one comparison tells: what is not is in this range.
-    const std::uint32_t first = bad.empty() ? element_count : bad.front();
-    const std::uint32_t span = (all_in_range ? bad.back() + 1 : kAbsent) - first;
-    const auto may_be_bad = [=](const Corner& corner) { return corner.*index - first < span; };
-    const auto mend_triangles = [&](std::size_t begin, std::size_t end) {
-        Missing missing;
-        auto polygon = std::ranges::upper_bound(polygons, begin, {}, &ObjPolygon::first_triangle);
-        if (polygon != polygons.begin()) --polygon;
-        for (std::size_t t = begin; t < end; ++t) {
-            Corner* const corner = &corners[3 * t];
-            if (!(may_be_bad(corner[0]) | may_be_bad(corner[1]) | may_be_bad(corner[2]))) continue;
-            // A fan states the corners of its other triangles but for the last again.
-            while (polygon != polygons.end() && t >= end_of(*polygon)) ++polygon;
-            const bool is_of_fan = polygon != polygons.end() && t >= polygon->first_triangle;
-            const bool goes_on = is_of_fan && t > polygon->first_triangle;
-            for (std::size_t k = 0; k < 3; ++k) {
-                std::uint32_t& i = corner[k].*index;
-                if (i == kAbsent || (i < element_count && !std::isnan(elements[i].x))) continue;
-                i = kAbsent;
-                add_range(missing.ranges,
-                          is_of_fan ? TriangleRange{polygon->first_triangle, end_of(*polygon)}
-                                    : TriangleRange{t, t + 1});
-                if (goes_on && k < 2) continue;
-                if (missing.count++ == 0) missing.first_triangle = t;
-            }
-        }
-        return missing;
-    };
-    constexpr std::size_t kBlock = 1 << 13;
-    const std::size_t triangles = corners.size() / 3;
-    std::vector<Missing> found(triangles / kBlock + 1);
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
-        found[i] = mend_triangles(i * kBlock, std::min(triangles, (i + 1) * kBlock));
-    });
-    Missing all;
-    for (const Missing& missing : found) {
-        if (all.count == 0) all.first_triangle = missing.first_triangle;
-        all.count += missing.count;
-        for (const TriangleRange& range : missing.ranges) add_range(all.ranges, range);
-    }
-    for (const std::uint32_t i : bad) elements[i] = T{0.0f};
-    if (attribute == kObjNormal) add_ranges(contents_.scene.without_normals, all.ranges);
-    warn_of_missing(attribute, all.count, all.first_triangle);
+    SourceScene& scene = contents_.scene;
+    const bool all_in_range = !has_invalid_ && max_index_[attribute] <= elements.size();
+    const Mended mended = mend_corners(elements, bad_[attribute], all_in_range, index,
+                                       contents_.polygons, scene.corners);
+    for (const std::uint32_t i : bad_[attribute]) elements[i] = T{0.0f};
+    if (attribute == kObjNormal)
+        scene.without_normals = joined(scene.without_normals, mended.ranges);
+    warn_of_missing(attribute, mended.count, mended.first_triangle);
 }
 
 void Assembly::mend() {
