@@ -137,7 +137,7 @@ enum class FrameModel : std::uint8_t {
     /// this vertex's largest component; of vertex 0 the digit of ratio 0. The one for other forms.
     neighbours,
     x_tangent,  ///< the same, but others[partner()] last: FrameCode::of_x_tangent()
-    /// As x_tangent, but the first two FrameCode::of_normal() of sum_normals(), unless the largest
+    /// As x_tangent, but the first two FrameCode::of_turn() of sum_normals(), unless the largest
     /// component is y or z. Only for quantised positions.
     x_tangent_of_positions,
 };

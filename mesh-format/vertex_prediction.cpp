@@ -162,8 +162,7 @@ int FrameCode<kForm>::of_x_tangent(int first, int second) {
 // axis after one by b, at most 90 degrees, about the y axis. Its quaternion is (sin a/2 cos b/2,
 // cos a/2 sin b/2, sin a/2 sin b/2, cos a/2 cos b/2), its normal (sin b, -sin a cos b, cos a cos
 // b).
-template <FrameForm kForm>
-void FrameCode<kForm>::of_normal(const Normal& normal, std::uint32_t largest, Digits& others) {
+Turn turn_to(const Normal& normal) {
     std::array<std::uint64_t, 3> sizes;
     for (std::size_t k = 0; k < 3; ++k) {
         const auto number = static_cast<std::uint64_t>(normal[k]);
@@ -174,12 +173,16 @@ void FrameCode<kForm>::of_normal(const Normal& normal, std::uint32_t largest, Di
     for (std::size_t k = 0; k < 3; ++k) n[k] = static_cast<int>(sizes[k] >> std::max(bits - 15, 0));
 
     const Polar yz = polar(n[2], n[1]);
-    const int half_b = polar(yz.length, n[0]).angle / 2;
-    const int half_a = (normal[2] < 0 ? 4 * kAngles - yz.angle : yz.angle) / 2;
-    const int first = std::min(largest == 0 ? 2 * kAngles - half_a : half_a, kAngles);
+    return {(normal[2] < 0 ? 4 * kAngles - yz.angle : yz.angle) / 2,
+            polar(yz.length, n[0]).angle / 2, normal[1] > 0 ? -1 : 0, normal[0] < 0 ? -1 : 0};
+}
+
+template <FrameForm kForm>
+void FrameCode<kForm>::of_turn(const Turn& turn, std::uint32_t largest, Digits& others) {
+    const int first = std::min(largest == 0 ? 2 * kAngles - turn.about_x : turn.about_x, kAngles);
     others[largest == 0 ? 2 : 0] =
-        static_cast<std::int16_t>(digit_of_angle<kForm>(first, normal[1] > 0 ? -1 : 0));
-    others[1] = static_cast<std::int16_t>(digit_of_angle<kForm>(half_b, normal[0] < 0 ? -1 : 0));
+        static_cast<std::int16_t>(digit_of_angle<kForm>(first, turn.x_sign));
+    others[1] = static_cast<std::int16_t>(digit_of_angle<kForm>(turn.about_y, turn.y_sign));
 }
 
 template struct FrameCode<FrameForm::quat48>;

@@ -20,6 +20,16 @@ using Normal = std::array<std::int64_t, 3>;
 void sum_normals(std::span<const std::uint16_t> indices, const std::byte* positions,
                  std::size_t stride, std::span<Normal> sums);
 
+/// What turns the axes to a frame whose tangent is the x axis, made orthogonal to the normal: half
+/// angles about the x axis and before that about the y axis, in units of 45 degrees / 16,383, and
+/// -1 where they are negative.
+struct Turn {
+    int about_x, about_y;
+    int x_sign, y_sign;
+};
+
+Turn turn_to(const Normal& normal);
+
 /// One for each component of a quaternion but the largest.
 using Digits = std::array<std::int16_t, 3>;
 
@@ -57,9 +67,9 @@ struct FrameCode {
     /// `first` and `second` are the other two digits, in their order.
     static int of_x_tangent(int first, int second);
 
-    /// Sets `others` to the digits of such a frame if it has this normal, except for
+    /// Sets `others` to the digits of such a frame by its turn, except for
     /// others[partner(largest)]. Component `largest` is x or w, as it always is in such frames.
-    static void of_normal(const Normal& normal, std::uint32_t largest, Digits& others);
+    static void of_turn(const Turn& turn, std::uint32_t largest, Digits& others);
 };
 
 /// The place among the others of that component whose product with the largest is xy or zw.

@@ -54,21 +54,29 @@ class Rows {
 
     void decode(const std::byte* planes, std::span<const std::uint16_t> indices, std::byte* out) {
         const std::byte* const tops = planes + kTopPlane * count_;
+        // Step by step for a block: so processors work on many vertices at once.
         for (std::size_t first = 0; first < count_; first += kBlock) {
             const std::size_t size = std::min(kBlock, count_ - first);
             std::array<Row, kBlock> differences;
             read(planes, first, size, differences);
-            for (std::size_t i = first; i < first + size; ++i) {
+            for (std::size_t k = 0; k < size; ++k) {
                 if constexpr (kHasNormals)
-                    add_place(i, differences[i - first], out + i * kStride);
+                    add_place(first + k, differences[k]);
                 else
-                    add(i, differences[i - first], to_top(tops[i]), out + i * kStride);
+                    add(first + k, differences[k], to_top(tops[first + k]));
             }
+            if constexpr (!kHasNormals) finish(first, size, out);
         }
-        if constexpr (kHasNormals) {
-            sum_normals(indices, out, kStride, {normals_, count_});
-            for (std::size_t i = 0; i < count_; ++i)
-                add_frame(i, to_top(tops[i]), out + i * kStride);
+        if constexpr (!kHasNormals) return;
+        sum_normals(indices, reinterpret_cast<const std::byte*>(rows_), sizeof(Row),
+                    {normals_, count_});
+        for (std::size_t first = 0; first < count_; first += kBlock) {
+            const std::size_t size = std::min(kBlock, count_ - first);
+            std::array<Turn, kBlock> turns;
+            for (std::size_t k = 0; k < size; ++k) turns[k] = turn_to(normals_[first + k]);
+            for (std::size_t k = 0; k < size; ++k)
+                add_frame(first + k, turns[k], to_top(tops[first + k]));
+            finish(first, size, out);
         }
     }
 
@@ -133,48 +141,62 @@ class Rows {
         return ((change | (tops_[at.b] ^ before) | (tops_[at.c] ^ before)) & 3u) != 0;
     }
 
-    void add(std::size_t i, Row difference, std::uint8_t change, std::byte* out) {
-        const std::uint16_t partner_difference = difference[kPartner];
-        if (kHasPartner) difference[kPartner] = 0;
+    void add(std::size_t i, Row difference, std::uint8_t change) {
+        if constexpr (kHasPartner) {
+            partners_[i] = difference[kPartner];
+            difference[kPartner] = 0;
+        }
         Row row = sum(i, difference);
         const bool differs = set_top(i, change);
-        const std::uint8_t top = tops_[i];
+        const std::uint32_t largest = tops_[i] & 3u;
         if (differs || !reduce(row)) [[unlikely]] {
             Digits expected;
-            expect(i, top & 3u, differs, expected);
-            set_digits(row, expected, top & 3u, difference);
+            expect(i, largest, differs, expected);
+            set_digits(row, expected, largest, difference);
         }
         rows_[i] = row;
-        if constexpr (kHasPartner)
-            partners_[i] = row[kPartner] = partner_of(row, partner_difference);
-        put(row, top, out);
     }
 
     /// Position and UV; leaves the digits' differences in the row.
-    void add_place(std::size_t i, const Row& difference, std::byte* out) {
+    void add_place(std::size_t i, Row difference) {
         constexpr Row kDigitsOnly{0, 0, 0, 0xFFFF, 0xFFFF, 0xFFFF, 0, 0};
+        partners_[i] = difference[kPartner];
         rows_[i] = (sum(i, difference) & ~kDigitsOnly) | (difference & kDigitsOnly);
-        put(rows_[i], 0, out);
     }
 
-    /// The frame, once the normals are known.
-    void add_frame(std::size_t i, std::uint8_t change, std::byte* out) {
+    /// The frame, once the turn to the normal is known.
+    void add_frame(std::size_t i, const Turn& turn, std::uint8_t change) {
         const bool differs = set_top(i, change);
         const std::uint32_t largest = tops_[i] & 3u;
         Digits expected;
         if (largest == 0 || largest == 3)
-            Code::of_normal(normals_[i], largest, expected);
+            Code::of_turn(turn, largest, expected);
         else
             expect(i, largest, differs, expected);
         Row row = rows_[i];
         set_digits(row, expected, largest, row);
-        partners_[i] = row[kPartner] = partner_of(row, row[kPartner]);
         rows_[i] = row;
-        put(row, tops_[i], out);
     }
 
-    static std::uint16_t partner_of(const Row& row, std::uint16_t difference) {
-        return digit(Code::of_x_tangent(row[kFirstDigit], row[kFirstDigit + 1]), difference);
+    /// What does not wait for other vertices.
+    void finish(std::size_t first, std::size_t size, std::byte* out) {
+        const std::size_t end = first + size;
+        if constexpr (kHasPartner) {
+            for (std::size_t i = first; i < end; ++i) partners_[i] = partner_digit(i);
+            finished_ = end;
+        }
+        for (std::size_t i = first; i < end; ++i) {
+            Row row = rows_[i];
+            if constexpr (kHasPartner) row[kPartner] = partners_[i];
+            put(row, tops_[i], out + i * kStride);
+        }
+    }
+
+    /// The digit that the other two give; before finish() partners_ has its difference.
+    std::uint16_t partner_digit(std::size_t i) const {
+        if (i < finished_) return partners_[i];
+        const Row& row = rows_[i];
+        return digit(Code::of_x_tangent(row[kFirstDigit], row[kFirstDigit + 1]), partners_[i]);
     }
 
     /// Each digit of a sum modulo the number of levels; false where that is too far.
@@ -229,7 +251,7 @@ class Rows {
         result.top = tops_[i];
         const std::uint32_t largest = result.top & 3u;
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint16_t value = k < kDigits ? rows_[i][kFirstDigit + k] : partners_[i];
+            const std::uint16_t value = k < kDigits ? rows_[i][kFirstDigit + k] : partner_digit(i);
             result.others[place(largest, k)] = static_cast<std::int16_t>(value);
         }
         return result;
@@ -286,6 +308,7 @@ class Rows {
                                                  top_bits(6), top_bits(7)};
 
     std::size_t count_;
+    std::size_t finished_ = 0;  // vertices
     std::span<const Neighbours> neighbours_;
     Row* rows_;
     std::uint8_t* tops_;

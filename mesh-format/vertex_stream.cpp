@@ -204,7 +204,7 @@ class Frames {
     void expect(std::size_t i, Digits& expected) const {
         const std::uint32_t largest = frames_[i].top & 3u;
         if (kModel == FrameModel::x_tangent_of_positions && (largest == 0 || largest == 3))
-            return Code::of_normal(normals_[i], largest, expected);
+            return Code::of_turn(turn_to(normals_[i]), largest, expected);
         if (i == 0) return expected.fill(Code::kZero);
         const Neighbours& at = neighbours_[i];
         const FrameDigits& a = frames_[at.a];
