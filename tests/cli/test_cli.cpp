@@ -406,6 +406,7 @@ TEST_F(Cli, BakesAreTheSameForAnyNumberOfThreads) {
     const auto baked = [&](const std::string& threads, const Words& options) {
         Words arguments{"scenes/stage.obj", "-o", "stage.cw2mesh", "--quiet", "--threads", threads};
         arguments.insert(arguments.end(), options.begin(), options.end());
+        fs::remove(here("stage.cw2mesh"));  // or its textures would be used again
         const Outcome outcome = bake(arguments);
         EXPECT_EQ(outcome.status, 0) << outcome.err;
         return bytes_of(here("stage.cw2mesh"));
