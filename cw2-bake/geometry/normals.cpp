@@ -94,11 +94,11 @@ class Lacking {
                         const Visit& visit) const {
         // Where they are few, one comparison tells of most corners.
         const auto may_be_there = [first = first_, span = span_](const Corner& corner) {
-            return corner.position - first < span;
+            return unsigned{corner.position - first < span};
         };
         for (; begin < end; begin += 3) {
             const Corner* const corner = &corners[begin];
-            if (!(may_be_there(corner[0]) | may_be_there(corner[1]) | may_be_there(corner[2])))
+            if ((may_be_there(corner[0]) | may_be_there(corner[1]) | may_be_there(corner[2])) == 0)
                 continue;
             for (std::size_t k = 0; k < 3; ++k)
                 if (is_lacking_[corner[k].position]) visit(begin + k);

@@ -40,14 +40,17 @@ Mended mend_corners(const std::vector<T>& elements, std::span<const std::uint32_
     // Nearly all corners are good, and one comparison tells: what is not is in this range.
     const std::uint32_t first = bad.empty() ? element_count : bad.front();
     const std::uint32_t span = (all_in_range ? bad.back() + 1 : kAbsent) - first;
-    const auto may_be_bad = [=](const Corner& corner) { return corner.*index - first < span; };
+    const auto may_be_bad = [=](const Corner& corner) {
+        return unsigned{corner.*index - first < span};
+    };
     const auto mend_triangles = [&](std::size_t begin, std::size_t end) {
         Mended mended;
         auto polygon = std::ranges::upper_bound(polygons, begin, {}, &ObjPolygon::first_triangle);
         if (polygon != polygons.begin()) --polygon;
         for (std::size_t t = begin; t < end; ++t) {
             Corner* const corner = &corners[3 * t];
-            if (!(may_be_bad(corner[0]) | may_be_bad(corner[1]) | may_be_bad(corner[2]))) continue;
+            if ((may_be_bad(corner[0]) | may_be_bad(corner[1]) | may_be_bad(corner[2])) == 0)
+                continue;
             // A fan states the corners of its other triangles but for the last again.
             while (polygon != polygons.end() && t >= end_of(*polygon)) ++polygon;
             const bool is_of_fan = polygon != polygons.end() && t >= polygon->first_triangle;

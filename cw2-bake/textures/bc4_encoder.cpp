@@ -158,8 +158,9 @@ CW2_INLINE Floats encode_on_ramp(const Values& values, const Ramp& ramp, float l
         const Floats value = values.of[i];
         Floats step = nearest_step((ramp.first - value) * scale);
         const Floats next = value >= limit ? step - 1.0f : step + 1.0f;
-        step = strays(value, decoded(ramp, step), limit) & (next >= 0.0f) & (next <= 7.0f) ? next
-                                                                                           : step;
+        const auto goes_on =
+            strays(value, decoded(ramp, step), limit) & (next >= 0.0f) & (next <= 7.0f);
+        step = goes_on ? next : step;
         shown.of[i] = decoded(ramp, step);
         block.index[i] = index_of(step);
         const Floats off = value - shown.of[i];
