@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# What textures cost, in three parts:
+# What textures cost, in four parts:
 #   a bake with textures beside reading the images alone, with OpenImageIO, in as many threads;
 #   a bake over an earlier output beside a bake of the geometry and a copy of that output;
-#   load to first frame of the baked scene beside reading the images and blitting their mips.
+#   load to first frame of the baked scene beside reading the images and blitting their mips;
+#   how far pictures of blocks are from that of a lossless bake, and the bytes of all.
 # Usage: tests/bench/bench_textures.sh SCENE.obj FOLDER_OF_ITS_IMAGES
-# RUNS=N sets how often each runs [5]; medians are printed. Wants GNU time, and the targets
-# bench_textures and bench_blits, built. A benchmark, no test.
+# RUNS=N sets how often each runs [5]; medians are printed. VIEW holds the options of the pictures, if
+# not the default view's. Wants GNU time, and the targets bench_textures, bench_blits and
+# compare_images, built. A benchmark, no test.
 set -euo pipefail
 obj=$1 images=$2
 cd "$(dirname "$0")/../.."
@@ -41,6 +43,8 @@ for ((i = 0; i < runs; ++i)); do
     run floor "$bin/bench_textures" "$images"
     rm -f "$work/scene.cw2mesh"
     run bake "$bin/cw2-bake" --quiet "$obj" -o "$work/scene.cw2mesh"
+    rm -f "$work/compressed.cw2mesh"
+    run compressed "$bin/cw2-bake" --quiet "$obj" -o "$work/compressed.cw2mesh" --compress
     rm -f "$work/plain.cw2mesh"
     run lossless "$bin/cw2-bake" --quiet "$obj" -o "$work/plain.cw2mesh" --textures lossless
     run again "$bin/cw2-bake" --quiet "$obj" -o "$work/scene.cw2mesh"
@@ -54,6 +58,7 @@ done
 
 line 'reading alone' floor
 line 'bake, in blocks' bake
+line 'bake, compressed' compressed
 line 'bake, lossless' lossless
 echo "  bake / reading: $(ratio "$(median bake 1)" "$(median floor 1)") wall," \
     "$(ratio "$(median bake 2)" "$(median floor 2)") CPU"
@@ -66,3 +71,9 @@ first=$(awk '{ print $1 + $2 }' "$work/first.runs" | sort -g | awk '{ v[NR] = $1
 echo "load to first frame: $first ms (loading $(median first 1))"
 echo "reading and blitting: $(median blits 1) ms (reading $(median blits 2))"
 echo "  first frame / blitting: $(ratio "$first" "$(median blits 1)")"
+read -ra view <<<"${VIEW-}"
+for name in plain scene compressed; do
+    "$bin/cw2" "$work/$name.cw2mesh" --output "$work/$name.png" "${view[@]}"
+    echo "$name: $(stat -c %s "$work/$name.cw2mesh") bytes"
+    "$bin/compare_images" "$work/plain.png" "$work/$name.png" || true
+done
