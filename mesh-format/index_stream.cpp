@@ -73,6 +73,28 @@ class Triangles {
             see(y);
         }
         unsigned z = 0;
+        if (!end(code, p, y, beyond, z, numbers)) return false;
+        if (start > kPivotNumber) [[unlikely]] {
+            places_[p].to = static_cast<Index>(y);
+            places_[y].edge = p | z << 16;
+        }
+        see(z);
+        pivot_ = p;
+        second_ = y;
+        third_ = z;
+        return true;
+    }
+
+    /// Reaches the vertices of no triangle.
+    void finish() {
+        while (next_ < neighbours_.size()) reach_alone();
+    }
+
+ private:
+    /// Sets the third vertex, and lets the border go round the triangle.
+    template <typename Numbers>
+    bool end(unsigned code, unsigned p, unsigned y, unsigned beyond, unsigned& z,
+             Numbers& numbers) {
         // Tests of bits: a table of jumps is slower.
         if (code & kThirdNumber) {
             if ((code & (kClosesPivot | kClosesSecond)) || !numbers.get(Corner::third, z))
@@ -112,23 +134,9 @@ class Triangles {
             places_[y].to = static_cast<Index>(z);
             places_[p].edge = z | y << 16;
         }
-        if (start > kPivotNumber) [[unlikely]] {
-            places_[p].to = static_cast<Index>(y);
-            places_[y].edge = p | z << 16;
-        }
-        see(z);
-        pivot_ = p;
-        second_ = y;
-        third_ = z;
         return true;
     }
 
-    /// Reaches the vertices of no triangle.
-    void finish() {
-        while (next_ < neighbours_.size()) reach_alone();
-    }
-
- private:
     /// A triangle that starts at no vertex seen of late.
     template <typename Numbers>
     bool start_anew(unsigned start, unsigned& p, unsigned& y, Numbers& numbers) {
