@@ -54,9 +54,9 @@ void count(const float* texel, Vectors& vectors) {
     vectors.largest_z = std::max(vectors.largest_z, z);
 }
 
-/// Of all texels, or of some 200,000 in rows at an odd distance, so that no pattern hides in it.
+/// Of all texels, or of some 50,000 in rows at an odd distance, so that no pattern hides in it.
 Vectors count_vectors(const Image& image) {
-    constexpr std::uint64_t kMost = 200'000;
+    constexpr std::uint64_t kMost = 50'000;
     const std::uint64_t texels = std::uint64_t{image.width} * image.height;
     const auto step = static_cast<std::uint32_t>(texels / kMost) | 1u;
     const TexelSource source = stored_texels(image);

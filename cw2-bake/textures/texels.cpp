@@ -16,8 +16,15 @@ namespace {
 /// over a level must stay finite.
 constexpr float kLargest = 1e9f;
 
+/// A load takes less than a division.
+constexpr std::array<float, 256> kOfBytes = [] {
+    std::array<float, 256> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i) / 255.0f;
+    return values;
+}();
+
 float to_float(std::uint8_t value) {
-    return static_cast<float>(value) / 255.0f;
+    return kOfBytes[value];
 }
 float to_float(std::uint16_t value) {
     return static_cast<float>(value) / 65'535.0f;
