@@ -337,8 +337,9 @@ TEST(Blocks, LowerBumpsMakeLessRoughness) {
 
 TEST(Blocks, EveryUseHasItsFormat) {
     const TemporaryFolder folder;
-    const auto ramp = [](int x, int y) {
-        return std::vector{x / 32.0, y / 32.0, 0.3, x < 9 ? 0.0 : 1.0};
+    // Of colours on a line, as BC1 has them.
+    const auto ramp = [](int x, int) {
+        return std::vector{x / 32.0, x / 64.0, 0.3, x < 9 ? 0.0 : 1.0};
     };
     write_image(folder / "color.png", 16, 16, 4, ramp);
     write_image(folder / "grey.png", 16, 16, 1, [](int x, int) { return std::vector{x / 20.0}; });
