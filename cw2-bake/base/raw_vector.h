@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/huge_pages.h"
+#include "common/large_memory.h"
 
 namespace bake {
 

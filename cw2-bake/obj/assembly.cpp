@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "common/huge_pages.h"
+#include "common/large_memory.h"
 #include "common/io.h"
 #include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/base/text_lines.h"

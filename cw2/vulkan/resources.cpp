@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include "common/huge_pages.h"
+#include "common/large_memory.h"
 #include "mesh-format/layout.h"
 
 namespace cw2 {
