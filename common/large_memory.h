@@ -16,8 +16,8 @@ void prefer_huge_pages(void* place, std::size_t size);
 /// bytes, 32 MiB at most: for programs that are over soon, and make much, one after the other.
 void keep_heap(int largest);
 
-/// Lets what that heap grows by, up to so many bytes, lie on huge pages; what nobody touches of them
-/// costs nothing. Called while there is one thread.
+/// Lets what that heap grows by, up to so many bytes, lie on huge pages; what nobody touches of
+/// them costs nothing. Called while there is one thread.
 void prefer_huge_heap(int bytes);
 
 }  // namespace common

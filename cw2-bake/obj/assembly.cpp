@@ -11,8 +11,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "common/large_memory.h"
 #include "common/io.h"
+#include "common/large_memory.h"
 #include "cw2-bake/base/diagnostics.h"
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/obj/mending.h"
