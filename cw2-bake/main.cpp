@@ -1,14 +1,12 @@
 // cw2-bake: turns an OBJ into a .cw2mesh file, and tells what is in one.
-#include <cstdint>
+#include <malloc.h>
+
 #include <exception>
-#include <filesystem>
 #include <new>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "common/io.h"
-#include "common/large_memory.h"
 #include "common/signals.h"
 #include "common/version.h"
 #include "cw2-bake/bake.h"
@@ -47,28 +45,24 @@ void run(const bake::Settings& settings) {
     }
 }
 
-/// A bake makes arrays one after the other, and handing their pages back to the kernel and asking
-/// for new ones takes a fifth of its time. Only the largest, which are of huge pages, go when they
-/// are done with.
-constexpr int kLargestKept = 12 << 20;
-/// Of inputs; what is made of smaller ones would fill a huge page or two in part.
-constexpr std::uintmax_t kWorthHugePages = 32 << 20;
-/// Less than the large arrays of such inputs: they would be kept where they fit.
-constexpr int kHugeHeap = 32 << 20;
+/// One heap that keeps what it has got: a bake makes arrays one after the other, and handing their
+/// pages back to the kernel and asking for new ones takes a fifth of its time. Only the largest,
+/// which are of huge pages, lie apart and go when they are done with.
+void keep_memory() {
+    mallopt(M_ARENA_MAX, 1);
+    mallopt(M_MMAP_THRESHOLD, 12 << 20);
+    mallopt(M_TRIM_THRESHOLD, 256 << 20);
+    mallopt(M_TOP_PAD, 4 << 20);
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    common::keep_heap(kLargestKept);
+    keep_memory();
     common::handle_signals("cw2-bake");
     try {
         const auto settings = bake::parse_settings(argc, argv, common::version());
-        std::error_code unknown;
-        if (settings) {
-            const std::uintmax_t bytes = std::filesystem::file_size(settings->input, unknown);
-            if (!unknown && bytes >= kWorthHugePages) common::prefer_huge_heap(kHugeHeap);
-            run(*settings);
-        }
+        if (settings) run(*settings);
         return 0;
     } catch (const bake::UsageError& error) {
         tell(error.what());

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "common/io.h"
-#include "common/large_memory.h"
 #include "common/progress.h"
 #include "common/quoted_text.h"
 #include "cw2/bench.h"
@@ -384,9 +383,6 @@ std::string render(const Device& device, const Options& options, SceneFile file,
 }  // namespace
 
 int render_headless(const Options& options) {
-    // Drivers that draw on CPUs allocate and free much for each frame.
-    common::keep_heap(32 << 20);
-    common::prefer_huge_heap(256 << 20);
     // The file is read while the driver is.
     std::future<SceneFile> loading;
     const auto load = [](const std::filesystem::path& path) {

@@ -118,7 +118,7 @@ tbb/parallel_pipeline.h | tbb::(?:parallel_pipeline|make_filter|flow_control|fil
 tiny_gltf.h     | (?:tinygltf::|TINYGLTF_)
 tiny_obj_loader.h | tinyobj::
 toml++/toml.h   | toml::
-unistd.h        | (?:read|write|close|fork|exec\w+|_exit|dup2?|pipe|unlink|getpid|isatty|sysconf|ftruncate|access|chdir|fsync|pread|pwrite|usleep|sleep|lseek|sbrk|mkdtemp|link|ssize_t|_SC_\w+|STD(?:IN|OUT|ERR)_FILENO)\b
+unistd.h        | (?:read|write|close|fork|exec\w+|_exit|dup2?|pipe|unlink|getpid|isatty|sysconf|ftruncate|access|chdir|fsync|pread|pwrite|usleep|sleep|lseek|mkdtemp|link|ssize_t|_SC_\w+|STD(?:IN|OUT|ERR)_FILENO)\b
 vulkan/vulkan.h | (?:Vk[A-Z]|vk[A-Z]|VK_)
 xxhash.h        | (?:XXH|xxh)
 zstd.h          | ZSTD_

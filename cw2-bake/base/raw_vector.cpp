@@ -5,16 +5,25 @@
 #include <cstdint>
 
 namespace bake {
-
-using common::kHugePage;
-
 namespace {
+
+constexpr std::uintptr_t kHugePage = 2 << 20;
 
 std::uintptr_t address_of(const void* place) {
     return reinterpret_cast<std::uintptr_t>(place);
 }
 
 }  // namespace
+
+void prefer_huge_pages(void* place, std::size_t size) {
+    constexpr std::size_t kWorthwhile = 12 << 20;
+    if (size < kWorthwhile) return;
+    const auto address = address_of(place);
+    const std::uintptr_t begin = (address + kHugePage - 1) / kHugePage * kHugePage;
+    const std::uintptr_t end = (address + size) / kHugePage * kHugePage;
+    // Where there are none, all stays as it is.
+    ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
+}
 
 void PageReleaser::release(std::size_t end) {
     if (end - released_ < 2 * kHugePage) return;

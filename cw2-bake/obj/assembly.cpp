@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "common/io.h"
-#include "common/large_memory.h"
 #include "cw2-bake/base/diagnostics.h"
+#include "cw2-bake/base/raw_vector.h"
 #include "cw2-bake/base/text_lines.h"
 #include "cw2-bake/obj/mending.h"
 #include "cw2-bake/obj/parser.h"
@@ -41,7 +41,7 @@ void append(std::vector<T>& all, std::span<const T> more, std::size_t more_text_
         const auto expected = static_cast<std::size_t>(elements_per_byte *
                                                        static_cast<double>(text_bytes_left) * 1.1);
         all.reserve(std::max(all.size() + more.size() + expected, all.size() * 3 / 2));
-        common::prefer_huge_pages(all.data(), all.capacity() * sizeof(T));
+        prefer_huge_pages(all.data(), all.capacity() * sizeof(T));
     }
     all.insert(all.end(), more.data(), more.data() + more.size());
 }

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <utility>
 
-#include "common/large_memory.h"
 #include "mesh-format/layout.h"
 
 namespace cw2 {
@@ -49,11 +48,9 @@ Memory allocate(const Device& device, const VkMemoryRequirements& requirements, 
     return {device.get(), memory, requirements.size};
 }
 
-/// On CPUs the pages are not touched yet.
 std::byte* map(const Device& device, const Memory& memory) {
     void* address = nullptr;
     check(vkMapMemory(device.get(), memory.get(), 0, VK_WHOLE_SIZE, 0, &address), "vkMapMemory");
-    if (device.is_cpu()) common::prefer_huge_pages(address, memory.bytes());
     return static_cast<std::byte*>(address);
 }
 
