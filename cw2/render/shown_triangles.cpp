@@ -303,12 +303,13 @@ class Gatherer {
 
     ShownTriangles gathered(std::vector<Place> places) const {
         ShownTriangles shown;
-        shown.indices.reserve(3 * places.size());
+        shown.indices.resize(3 * places.size());
+        std::uint16_t* end = shown.indices.data();
         for (std::size_t first = 0; first < places.size(); first += kRun) {
             const std::span run =
                 std::span(places).subspan(first, std::min(kRun, places.size() - first));
             gather(run);
-            for (const Place& place : run) append(place, shown);
+            for (const Place& place : run) end = append(place, end, shown);
         }
         return shown;
     }
@@ -331,16 +332,18 @@ class Gatherer {
         if (calls * kFew > run.size()) std::ranges::stable_sort(run, {}, rank);
     }
 
-    void append(const Place& place, ShownTriangles& shown) const {
+    /// Writes its corners to `end`, and returns where the next ones go.
+    std::uint16_t* append(const Place& place, std::uint16_t* end, ShownTriangles& shown) const {
         const SceneChunk& chunk = chunk_of(place);
-        const auto first = static_cast<std::uint32_t>(shown.indices.size());
-        if (shown.ranges.empty() || shown.ranges.back().draw != chunk.draw)
+        if (shown.ranges.empty() || shown.ranges.back().draw != chunk.draw) {
+            const auto first = static_cast<std::uint32_t>(end - shown.indices.data());
             shown.ranges.push_back({chunk.draw, first, 0});
+        }
         const std::uint16_t* const corners =
             scene_.indices.data() + scene_.draws[chunk.draw].index_offset / sizeof(std::uint16_t) +
             chunk.first_index + place.first_index;
-        shown.indices.insert(shown.indices.end(), corners, corners + 3);
         shown.ranges.back().index_count += 3;
+        return std::copy_n(corners, 3, end);
     }
 
     const SceneTriangles& scene_;
