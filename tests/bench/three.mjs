@@ -1,5 +1,6 @@
 // Draws an OBJ with three.js in a headless Chromium and prints the milliseconds from the launch to
-// the first picture, of a steady frame with Phong materials, and of one with standard ones.
+// the first picture, of a steady frame with Phong materials, and of one with standard ones, which
+// have roughness and metalness maps, too.
 // Usage: node three.mjs NODE_MODULES CHROMIUM OBJ WIDTHxHEIGHT CAMERA TARGET LIGHT  (X,Y,Z each)
 import { spawn } from 'node:child_process';
 import { createServer } from 'node:http';
@@ -55,11 +56,25 @@ try {
                 renderer: gl.getParameter(gl.getExtension('WEBGL_debug_renderer_info')
                     ?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER) });
     const phong = median(9);
+    // What MTLLoader leaves out, and cw2 draws.
+    const statements = (await (await fetch('/scene/${name}.mtl')).text()).split('\\n')
+        .map((line) => line.trim().split(/\\s+/));
+    const maps = new Map();
+    let material;
+    for (const [key, ...rest] of statements) {
+        if (key === 'newmtl') maps.set(rest.join(' '), material = {});
+        const use = { map_Pr: 'roughnessMap', map_Pm: 'metalnessMap' }[key];
+        if (!use) continue;
+        const texture = await new THREE.TextureLoader().loadAsync('/scene/' + rest.join(' '));
+        texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
+        material[use] = texture;
+    }
     model.traverse((mesh) => {
         if (!mesh.isMesh) return;
         const standard = (m) => new THREE.MeshStandardMaterial({ map: m.map, normalMap: m.normalMap,
             bumpMap: m.bumpMap, alphaMap: m.alphaMap, alphaTest: m.alphaMap ? 0.5 : 0,
-            color: m.color, roughness: 0.5 });
+            color: m.color, roughness: maps.get(m.name)?.roughnessMap ? 1 : 0.5,
+            metalness: maps.get(m.name)?.metalnessMap ? 1 : 0, ...maps.get(m.name) });
         mesh.material = Array.isArray(mesh.material) ? mesh.material.map(standard)
                                                      : standard(mesh.material);
     });
