@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "mesh-format/zigzag.h"
+
 namespace mesh_format {
 
 namespace {
@@ -205,15 +207,14 @@ class Encoder {
     std::vector<std::byte> finish() {
         triangles_.finish();
         std::vector<std::byte> stream = std::move(codes_);
-        for (const unsigned number : numbers_) stream.push_back(std::byte(number & 0xFF));
-        for (const unsigned number : numbers_) stream.push_back(std::byte(number >> 8));
+        for (const Index number : numbers_) stream.push_back(std::byte(number & 0xFF));
+        for (const Index number : numbers_) stream.push_back(std::byte(number >> 8));
         return stream;
     }
 
     bool get(Corner corner, unsigned& vertex) {
         vertex = choice_.vertices[static_cast<std::size_t>(corner)];
-        const auto difference = static_cast<std::int16_t>(vertex - last_);
-        numbers_.push_back(static_cast<Index>(difference << 1 ^ difference >> 15));
+        numbers_.push_back(zigzag(static_cast<Index>(vertex - last_)));
         last_ = vertex;
         return true;
     }
@@ -260,7 +261,7 @@ class Encoder {
     Triangles triangles_;
     Choice choice_{};
     std::vector<std::byte> codes_;
-    std::vector<unsigned> numbers_;
+    std::vector<Index> numbers_;
     unsigned last_ = 0;
 };
 
@@ -274,10 +275,10 @@ class Numbers {
 
     bool get(Corner, unsigned& vertex) {
         if (used_ == low_.size()) return false;
-        const auto number =
-            std::to_integer<unsigned>(low_[used_]) | std::to_integer<unsigned>(high_[used_]) << 8;
+        const auto number = static_cast<Index>(std::to_integer<unsigned>(low_[used_]) |
+                                               std::to_integer<unsigned>(high_[used_]) << 8);
         ++used_;
-        vertex = last_ = static_cast<Index>(last_ + (number >> 1 ^ (0u - (number & 1))));
+        vertex = last_ = static_cast<Index>(last_ + unzigzag(number));
         return vertex < vertex_count_;
     }
     bool all_used() const { return used_ == low_.size(); }

@@ -8,6 +8,7 @@
 
 #include "mesh-format/vertex_prediction.h"
 #include "mesh-format/vertex_rows.h"
+#include "mesh-format/zigzag.h"
 
 namespace mesh_format {
 
@@ -22,17 +23,6 @@ bool in_digits(FrameForm form) {
 std::uint32_t plane_count(const VertexForms& forms) {
     return position_bytes(forms.position) + uv_bytes(forms.uv) + color_bytes(forms.color) +
            (in_digits(forms.frame) ? kFramePlanes : frame_bytes(forms.frame));
-}
-
-/// Small numbers of both signs to small numbers: 0, -1, 1, -2 to 0, 1, 2, 3.
-template <typename Word>
-Word zigzag(Word value) {
-    const bool negative = value >> (8 * sizeof value - 1) != 0;
-    return static_cast<Word>(value << 1 ^ (negative ? ~0u : 0u));
-}
-template <typename Word>
-Word unzigzag(Word value) {
-    return static_cast<Word>(value >> 1 ^ (value & 1 ? ~0u : 0u));
 }
 
 /// The bits of a float to a number of the same order, modulo 2^32; other words stay as they are.

@@ -81,6 +81,7 @@ class Assembly {
                  std::size_t first);
     bool resolve(ObjChunk& chunk) const;
     std::uint32_t material_in_use();
+    bool all_in_range(ObjAttribute attribute) const;
     bool is_good(ObjAttribute attribute) const;
     void mend();
     template <typename T>
@@ -233,10 +234,13 @@ void Assembly::append_notes(ObjChunk& chunk, std::size_t text_bytes_left) {
                   {first_triangle, first_triangle + chunk.triangles.size()});
 }
 
+bool Assembly::all_in_range(ObjAttribute attribute) const {
+    return !has_invalid_ && max_index_[attribute] <= counts_of(contents_.scene)[attribute];
+}
+
 /// Whether all elements are numbers, all normals have a length, and all indices in range.
 bool Assembly::is_good(ObjAttribute attribute) const {
-    return !has_invalid_ && bad_[attribute].empty() &&
-           max_index_[attribute] <= counts_of(contents_.scene)[attribute];
+    return bad_[attribute].empty() && all_in_range(attribute);
 }
 
 /// Parses the statement of a triangle again, now that the bounds of its indices are known.
@@ -289,8 +293,7 @@ template <typename T>
 void Assembly::mend(ObjAttribute attribute, std::uint32_t Corner::*index,
                     std::vector<T>& elements) {
     SourceScene& scene = contents_.scene;
-    const bool all_in_range = !has_invalid_ && max_index_[attribute] <= elements.size();
-    const Mended mended = mend_corners(elements, bad_[attribute], all_in_range, index,
+    const Mended mended = mend_corners(elements, bad_[attribute], all_in_range(attribute), index,
                                        contents_.polygons, scene.corners);
     for (const std::uint32_t i : bad_[attribute]) elements[i] = T{0.0f};
     if (attribute == kObjNormal)

@@ -247,11 +247,7 @@ CW2_INLINE double encode_colors(const Place& place, std::byte* out) {
 }  // namespace
 
 CW2_EVERY_CPU double encode_bc1_row(const PlainLevel& level, std::uint32_t top, std::byte* out) {
-    double error = 0.0;
-    for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += 8 * kLanes) {
-        error += encode_colors({level, left, top}, out);
-    }
-    return error;
+    return encode_row<8, encode_colors>(level, top, out);
 }
 
 }  // namespace bake

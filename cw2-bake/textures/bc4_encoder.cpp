@@ -130,26 +130,13 @@ CW2_INLINE Ints index_of(Floats step) {
     return step == 0.0f ? Ints{} : later;
 }
 
-/// Encodes one channel; `values` become what the blocks decode to.
-CW2_INLINE void encode_scalars(Values& values, const Ramp& ramp, Block& block) {
-    const Floats scale = ramp.steps_per_unit();
-    for (int i = 0; i < 16; ++i) {
-        const Floats step = nearest_step((ramp.first - values.of[i]) * scale);
-        values.of[i] = decoded(ramp, step);
-        block.index[i] = index_of(step);
-    }
-    block.first = to_ints(ramp.first);
-    block.second = to_ints(ramp.second);
-}
-
-// ---- masks ----
-
 CW2_INLINE Ints strays(Floats value, Floats decoded, float limit) {
     return (value >= limit) ^ (decoded >= limit);
 }
 
-/// Fills in what the values decode to, each on its side of the limit, and returns the sum of the
-/// squared differences; huge where the ramp leaves a texel no such step.
+/// Fills in what the values decode to, and returns the sum of the squared differences. Of a mask
+/// each is on its side of the limit; the sum is huge where the ramp leaves a texel no such step.
+template <bool kIsMask>
 CW2_INLINE Floats encode_on_ramp(const Values& values, const Ramp& ramp, float limit, Values& shown,
                                  Block& block) {
     const Floats scale = ramp.steps_per_unit();
@@ -157,29 +144,39 @@ CW2_INLINE Floats encode_on_ramp(const Values& values, const Ramp& ramp, float l
     for (int i = 0; i < 16; ++i) {
         const Floats value = values.of[i];
         Floats step = nearest_step((ramp.first - value) * scale);
-        const Floats next = value >= limit ? step - 1.0f : step + 1.0f;
-        const auto goes_on =
-            strays(value, decoded(ramp, step), limit) & (next >= 0.0f) & (next <= 7.0f);
-        step = goes_on ? next : step;
+        if constexpr (kIsMask) {
+            const Floats next = value >= limit ? step - 1.0f : step + 1.0f;
+            const auto goes_on =
+                strays(value, decoded(ramp, step), limit) & (next >= 0.0f) & (next <= 7.0f);
+            step = goes_on ? next : step;
+        }
         shown.of[i] = decoded(ramp, step);
         block.index[i] = index_of(step);
         const Floats off = value - shown.of[i];
-        error += strays(value, shown.of[i], limit) ? all(1e9f) : off * off;
+        if constexpr (kIsMask)
+            error += strays(value, shown.of[i], limit) ? all(1e9f) : off * off;
+        else
+            error += off * off;
     }
     block.first = to_ints(ramp.first);
     block.second = to_ints(ramp.second);
     return error;
 }
 
+/// Encodes one channel; `values` become what the blocks decode to.
+CW2_INLINE void encode_scalars(Values& values, const Ramp& ramp, Block& block) {
+    encode_on_ramp<false>(values, ramp, 0.0f, values, block);
+}
+
 /// As encode_scalars(), with every texel on its side of the limit.
 CW2_INLINE void encode_mask(Values& values, float limit, Block& block) {
     // Between the ends of the whole ramp every value has a number on its side.
     Values shown;
-    const Floats error = encode_on_ramp(values, ramp_of_all(values), limit, shown, block);
+    const Floats error = encode_on_ramp<true>(values, ramp_of_all(values), limit, shown, block);
     const Ramp ramp = best_ramp(values);
     Values other_shown;
     Block other;
-    const Ints better = encode_on_ramp(values, ramp, limit, other_shown, other) < error;
+    const Ints better = encode_on_ramp<true>(values, ramp, limit, other_shown, other) < error;
     for (int i = 0; i < 16; ++i) {
         values.of[i] = better ? other_shown.of[i] : shown.of[i];
         block.index[i] = better ? other.index[i] : block.index[i];
@@ -227,40 +224,36 @@ CW2_INLINE double encode_normals(const Place& place, std::byte* out) {
     return sum_inside(errors, place) * (127.5 * 127.5);
 }
 
+/// With a limit of 0 no mask.
+CW2_INLINE double encode_values(const Place& place, std::byte* out, std::uint32_t limit) {
+    Ints texels[16];
+    gather<std::uint8_t>(place, texels);
+    Values decoded;
+    for (int i = 0; i < 16; ++i) decoded.of[i] = to_floats(texels[i]);
+    Block block;
+    if (limit == 0) {
+        // No picture shows that a better ramp is 0.9 dB nearer.
+        encode_scalars(decoded, ramp_of_all(decoded), block);
+    } else {
+        encode_mask(decoded, static_cast<float>(limit), block);
+    }
+    block.store(place, out, 8);
+    for (int i = 0; i < 16; ++i) {
+        const Floats difference = to_floats(texels[i]) - decoded.of[i];
+        decoded.of[i] = difference * difference;
+    }
+    return sum_inside(decoded, place);
+}
+
 }  // namespace
 
 CW2_EVERY_CPU double encode_bc4_row(const PlainLevel& level, std::uint32_t top, std::uint32_t limit,
                                     std::byte* out) {
-    double error = 0.0;
-    for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += 8 * kLanes) {
-        const Place place{level, left, top};
-        Ints texels[16];
-        gather<std::uint8_t>(place, texels);
-        Values decoded;
-        for (int i = 0; i < 16; ++i) decoded.of[i] = to_floats(texels[i]);
-        Block block;
-        if (limit == 0) {
-            // No picture shows that a better ramp is 0.9 dB nearer.
-            encode_scalars(decoded, ramp_of_all(decoded), block);
-        } else {
-            encode_mask(decoded, static_cast<float>(limit), block);
-        }
-        block.store(place, out, 8);
-        for (int i = 0; i < 16; ++i) {
-            const Floats difference = to_floats(texels[i]) - decoded.of[i];
-            decoded.of[i] = difference * difference;
-        }
-        error += sum_inside(decoded, place);
-    }
-    return error;
+    return encode_row<8, encode_values>(level, top, out, limit);
 }
 
 CW2_EVERY_CPU double encode_bc5_row(const PlainLevel& level, std::uint32_t top, std::byte* out) {
-    double error = 0.0;
-    for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += 16 * kLanes) {
-        error += encode_normals({level, left, top}, out);
-    }
-    return error;
+    return encode_row<16, encode_normals>(level, top, out);
 }
 
 }  // namespace bake

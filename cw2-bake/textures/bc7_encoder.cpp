@@ -341,11 +341,7 @@ CW2_INLINE double encode_blocks(const Place& place, std::byte* out) {
 }  // namespace
 
 CW2_EVERY_CPU double encode_bc7_row(const PlainLevel& level, std::uint32_t top, std::byte* out) {
-    double error = 0.0;
-    for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += 16 * kLanes) {
-        error += encode_blocks({level, left, top}, out);
-    }
-    return error;
+    return encode_row<16, encode_blocks>(level, top, out);
 }
 
 }  // namespace bake

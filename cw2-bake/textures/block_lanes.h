@@ -108,6 +108,17 @@ CW2_INLINE void store(const Place& place, Ints low, Ints high, std::byte* out, s
     }
 }
 
+/// Encodes a row of a level's blocks, each of kBytes, group by group: by kEncode(place, out,
+/// more...), which returns a group's error. Returns the sum of these.
+template <std::size_t kBytes, auto kEncode, typename... More>
+CW2_INLINE double encode_row(const PlainLevel& level, std::uint32_t top, std::byte* out,
+                             More... more) {
+    double error = 0.0;
+    for (std::uint32_t left = 0; left < level.width; left += 4 * kLanes, out += kBytes * kLanes)
+        error += kEncode(Place{level, left, top}, out, more...);
+    return error;
+}
+
 /// Red, green and blue.
 struct Colors {
     Values channel[3];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh-format/index_stream.h"
+#include "random_triangles.h"
 
 namespace {
 
@@ -63,13 +64,6 @@ Indices shuffled(Indices indices) {
         const std::size_t other = random() % (i + 1);
         std::swap_ranges(&indices[3 * i], &indices[3 * i] + 3, &indices[3 * other]);
     }
-    return indices;
-}
-
-Indices random_triangles(std::uint32_t vertices, std::size_t count) {
-    std::mt19937 random(3);
-    Indices indices(3 * count);
-    for (std::uint16_t& index : indices) index = static_cast<std::uint16_t>(random() % vertices);
     return indices;
 }
 

@@ -10,6 +10,7 @@
 #include "mesh-format/tangent_frame.h"
 #include "mesh-format/vertex_prediction.h"
 #include "mesh-format/vertex_stream.h"
+#include "random_triangles.h"
 
 namespace {
 
@@ -31,13 +32,6 @@ Indices sheet() {
             for (const std::uint16_t corner : {a, b, c, b, d, c}) indices.push_back(corner);
         }
     }
-    return indices;
-}
-
-Indices random_triangles(std::uint32_t vertices, std::size_t count) {
-    std::mt19937 random(3);
-    Indices indices(3 * count);
-    for (std::uint16_t& index : indices) index = static_cast<std::uint16_t>(random() % vertices);
     return indices;
 }
 
