@@ -6,7 +6,8 @@
 # and what ten times the triangles cost.
 # Debian's gltfpack (0.18, 0.22) makes no tangents. What a native one that does would take is
 # estimated: as much less than npm's as it takes less than npm's of its own version.
-# Usage: tests/bench/bench_bake.sh [OBJ...]    default: the demo scene and a grid of 1 M triangles
+# Usage: tests/bench/bench_bake.sh [OBJ...]    default: the demo scene and sheets of 103,058 and
+# 1,033,922 triangles, for which the target make_meshes is built
 # RUNS=N sets how often each runs [5]; NATIVE=COMMAND a gltfpack that is not on the PATH, maybe one
 # that its loader starts. Wants node, npm and GNU time. A benchmark, no test.
 set -euo pipefail
@@ -28,25 +29,6 @@ if [[ ${#native[@]} -gt 0 ]]; then
     twin=(node "$work/$version/node_modules/gltfpack/cli.js")
 fi
 filamesh=$(command -v filamesh || true)
-
-# make_grid SIDE FILE: a wavy sheet of 2 * SIDE^2 triangles with UVs and normals.
-make_grid() {
-    awk -v n="$1" 'BEGIN {
-        for (y = 0; y <= n; ++y) for (x = 0; x <= n; ++x) {
-            u = x / n; v = y / n
-            h = 0.1 * sin(9 * u) * cos(7 * v)
-            dx = 0.9 * cos(9 * u) * cos(7 * v); dy = -0.7 * sin(9 * u) * sin(7 * v)
-            l = sqrt(1 + dx * dx + dy * dy)
-            printf "v %.6f %.6f %.6f\nvt %.6f %.6f\nvn %.6f %.6f %.6f\n", \
-                10 * u, h, -10 * v, u, v, -dx / l, 1 / l, dy / l
-        }
-        for (y = 0; y < n; ++y) for (x = 1; x <= n; ++x) {
-            a = y * (n + 1) + x; b = a + 1; c = a + n + 1; d = c + 1
-            printf "f %d/%d/%d %d/%d/%d %d/%d/%d\nf %d/%d/%d %d/%d/%d %d/%d/%d\n", \
-                a, a, a, b, b, b, c, c, c, b, b, b, d, d, d, c, c, c
-        }
-    }' >"$2"
-}
 
 # measure NAME OUTPUT COMMAND...: appends "wall cpu KiB bytes" of one run to NAME.
 measure() {
@@ -150,10 +132,11 @@ frames() {
 bench_frames=build/release/bin/bench_frames
 scenes=("$@")
 if [[ ${#scenes[@]} -eq 0 ]]; then
+    echo "newmtl m" >"$work/meshes.mtl"
     for side in 227 719; do
-        [[ -f $work/grid$side.obj ]] || make_grid $side "$work/grid$side.obj"
+        build/release/bin/make_meshes sheet $side >"$work/sheet$side.obj"
     done
-    scenes=(build/release/assets/demo/courtyard.obj "$work/grid227.obj" "$work/grid719.obj")
+    scenes=(build/release/assets/demo/courtyard.obj "$work/sheet227.obj" "$work/sheet719.obj")
 fi
 for scene in "${scenes[@]}"; do
     echo "$scene: $(stat -c %s "$scene") bytes, $runs runs each"
@@ -172,8 +155,8 @@ for scene in "${scenes[@]}"; do
 done
 if [[ $# -eq 0 ]]; then
     # 1,033,922 triangles beside 103,058.
-    cp "$work/grid227.raw" "$work/small.runs"
-    cp "$work/grid719.raw" "$work/large.runs"
+    cp "$work/sheet227.raw" "$work/small.runs"
+    cp "$work/sheet719.raw" "$work/large.runs"
     echo '10.03 times the triangles'
     ratio 'times' large small
 fi

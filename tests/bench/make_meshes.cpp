@@ -1,12 +1,12 @@
 // make_meshes KIND SIZE >FILE.obj
 //
-// Meshes of the kinds that bench_geometry.sh compares, the same on every machine with this
-// library's random numbers:
+// Meshes for the benchmarks, the same on every machine with this library's random numbers:
 //   sheet  a wavy one of SIDE^2 x 2 triangles, all smooth
 //   noise  a ball of SIDE^2 x 2 triangles under seven octaves of noise, its vertices jittered
 //   scan   heights with noise in them, SIDE^2 x 2 triangles, no UVs
 //   cad    boxes and cylinders of SIZE triangles, most of them along the axes
 //   cards  SIZE leaves of two triangles, each with one of eight parts of a texture
+//   rooms  SIZE bumpy balls of 707^2 x 2 triangles, side by side, all smooth
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -112,9 +112,14 @@ void for_each_triangle(int side, const Print& print) {
     }
 }
 
+/// Of vertices behind the first `before`.
+void print_smooth_behind(int before, const std::array<int, 3>& t) {
+    std::printf("f");
+    for (const int i : t) std::printf(" %d/%d/%d", before + i + 1, before + i + 1, before + i + 1);
+    std::printf("\n");
+}
 void print_smooth(const std::array<int, 3>& t) {
-    std::printf("f %d/%d/%d %d/%d/%d %d/%d/%d\n", t[0] + 1, t[0] + 1, t[0] + 1, t[1] + 1, t[1] + 1,
-                t[1] + 1, t[2] + 1, t[2] + 1, t[2] + 1);
+    print_smooth_behind(0, t);
 }
 
 void make_sheet(int side) {
@@ -279,6 +284,32 @@ void make_cards(int count) {
     }
 }
 
+void make_rooms(int count) {
+    constexpr int kRoomSide = 707;
+    constexpr int kRoomVertices = (kRoomSide + 1) * (kRoomSide + 1);
+    const int columns = static_cast<int>(std::ceil(std::sqrt(count)));
+    for (int room = 0; room < count; ++room) {
+        std::printf("o room%d\n", room);
+        const Vector corner{3.0 * (room % columns), 0, 3.0 * (room / columns)};
+        for (int y = 0; y <= kRoomSide; ++y) {
+            for (int x = 0; x <= kRoomSide; ++x) {
+                const double polar = kPi * (0.01 + 0.98 * y / kRoomSide);
+                const double around = 2 * kPi * x / kRoomSide;
+                const Vector n{std::sin(polar) * std::cos(around), std::cos(polar),
+                               std::sin(polar) * std::sin(around)};
+                print_position(corner + (1.2 + 0.05 * std::sin(9 * around) * std::sin(7 * polar) +
+                                         0.01 * std::sin(61 * around + 43 * polar)) *
+                                            n);
+                print_uv(static_cast<double>(x) / kRoomSide, static_cast<double>(y) / kRoomSide);
+                print_normal(n);
+            }
+        }
+        for_each_triangle(kRoomSide, [&](const std::array<int, 3>& t) {
+            print_smooth_behind(room * kRoomVertices, t);
+        });
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -296,6 +327,8 @@ int main(int argc, char** argv) {
         make_cad(size);
     } else if (kind == "cards") {
         make_cards(size);
+    } else if (kind == "rooms") {
+        make_rooms(size);
     } else {
         return 2;
     }
