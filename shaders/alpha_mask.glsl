@@ -5,7 +5,7 @@ layout(set = kMaterialSet, binding = kAlphaMaskBinding) uniform sampler2D alpha_
 
 float alpha_mask_at_fragment() {
     if (use_alpha_mask == kAlphaMaskAbsent) return 1.0;
-    return vertex_color.a * texture(alpha_mask_map, uv, display.lod_bias).r;
+    return vertex_color.a * texture(alpha_mask_map, map_uv, display.lod_bias).r;
 }
 
 void discard_below_cutoff(float alpha_mask) {

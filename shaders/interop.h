@@ -106,7 +106,8 @@ CW2_CONSTANT uint kMetalnessMapConstant = 7;  // the same
 CW2_CONSTANT uint kFalseColorConstant = 8;    // 0: exposure, else false colour
 CW2_CONSTANT uint kUnlitConstant = 9;         // else the base colour is what is seen
 CW2_CONSTANT uint kMergedMapsConstant = 10;  // else the normal map holds x, y, roughness, metalness
-CW2_CONSTANT uint kSpecializationCount = 11;
+CW2_CONSTANT uint kChangingUvsConstant = 11;  // 0: they may be the same in neighbouring pixels
+CW2_CONSTANT uint kSpecializationCount = 12;
 
 // What a fragment shows; cw2/render/view.h names them.
 CW2_CONSTANT uint kViewShaded = 0;

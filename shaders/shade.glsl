@@ -11,6 +11,7 @@ layout(constant_id = kMetalnessMapConstant) const uint use_metalness_map = 1;
 layout(constant_id = kMergedMapsConstant) const uint merged_maps = 0;
 layout(constant_id = kFalseColorConstant) const uint use_false_color = 0;
 layout(constant_id = kUnlitConstant) const uint unlit = 0;
+layout(constant_id = kChangingUvsConstant) const uint changing_uvs = 0;
 
 layout(set = kSceneSet, binding = kSceneBinding, std140) uniform Scene { SceneUniforms scene; };
 layout(push_constant) uniform Push {
@@ -40,6 +41,18 @@ layout(location = 0) out vec4 color;
 float handedness = signed_by_handedness > 0.0 ? 1.0 : -1.0;
 vec2 uv = vec2(uv_x, uv_y);
 
+// Where maps are sampled. Where UVs are the same in a whole quad, as on faces that take their
+// colour from a palette, Mesa 25's anisotropic filter divides 0 by 0: they are moved apart, by more
+// than they are rounded by and far less than a texel.
+vec2 sampled_uv() {
+    if (changing_uvs == 0) return uv;
+    const float least = max(1.0, max(abs(uv.x), abs(uv.y))) / 1048576.0;
+    const vec2 change = max(abs(dFdx(uv)), abs(dFdy(uv)));
+    if (max(change.x, change.y) > least) return uv;
+    return uv + 2.0 * least * vec2(ivec2(gl_FragCoord.xy) & 1);
+}
+vec2 map_uv = sampled_uv();
+
 // Which side of the surface is seen, as a factor of its normals.
 float side() { return gl_FrontFacing ? 1.0 : draw.back_normals; }
 
@@ -58,19 +71,19 @@ vec3 shading_normal(vec2 texel) {
 Surface surface_at_fragment() {
     Surface surface;
     surface.base_color =
-        draw.base_color * vertex_color.rgb * texture(base_color_map, uv, display.lod_bias).rgb;
+        draw.base_color * vertex_color.rgb * texture(base_color_map, map_uv, display.lod_bias).rgb;
     const bool has_normal_map = draw.has_normal_map != 0;
     vec4 texel = vec4(0.0);
     if (merged_maps != 0 || (use_normal_map != 0 && has_normal_map))
-        texel = texture(normal_map, uv, display.lod_bias);
+        texel = texture(normal_map, map_uv, display.lod_bias);
     surface.alpha = draw.roughness;
     if (use_roughness_map != 0)
         surface.alpha *=
-            merged_maps != 0 ? texel.b : texture(roughness_map, uv, display.lod_bias).r;
+            merged_maps != 0 ? texel.b : texture(roughness_map, map_uv, display.lod_bias).r;
     surface.metalness = draw.metalness;
     if (use_metalness_map != 0)
         surface.metalness *=
-            merged_maps != 0 ? texel.a : texture(metalness_map, uv, display.lod_bias).r;
+            merged_maps != 0 ? texel.a : texture(metalness_map, map_uv, display.lod_bias).r;
     surface.normal =
         use_normal_map != 0 && has_normal_map ? shading_normal(texel.xy) : vertex_normal();
     return surface;

@@ -146,6 +146,7 @@ std::array<std::uint32_t, interop::kSpecializationCount> constants_of(const Pipe
     values[interop::kMetalnessMapConstant] = key.metalness_map ? 1 : 0;
     values[interop::kFalseColorConstant] = key.false_color ? 1 : 0;
     values[interop::kUnlitConstant] = key.unlit ? 1 : 0;
+    values[interop::kChangingUvsConstant] = key.changing_uvs ? 1 : 0;
     return values;
 }
 

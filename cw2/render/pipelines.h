@@ -65,6 +65,7 @@ struct PipelineKey {
     bool metalness_map;  ///< the same
     bool false_color;
     bool unlit;
+    bool changing_uvs;  ///< neighbouring pixels sample maps in different points
     auto operator<=>(const PipelineKey&) const = default;
 };
 

@@ -95,7 +95,8 @@ PipelineKey pipeline_key(const Draw& draw, Side side, const FrameSettings& setti
             .roughness_map = !settings.materials.roughness,
             .metalness_map = !settings.materials.metalness,
             .false_color = settings.false_color.has_value(),
-            .unlit = draw.unlit};
+            .unlit = draw.unlit,
+            .changing_uvs = draw.changing_uvs};
 }
 
 interop::DrawConstants draw_constants(const Draw& draw, const MaterialOverrides& materials) {

@@ -124,6 +124,7 @@ void Scene::make_textures(const Device& device, const Layouts& layouts, const Sc
     textures_ = SceneTextures(device, file.document, settings, first_levels);
     const std::vector<VkDescriptorSet> sets = make_material_sets(device, layouts, file.document);
     for (Draw& draw : draws_) {
+        draw.changing_uvs = device.is_cpu() && settings.anisotropy > 1.0f;
         draw.merged_maps = textures_.has_merged_maps(draw.constants.material);
         draw.material = sets[draw.constants.material];
     }

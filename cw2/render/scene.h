@@ -28,6 +28,7 @@ struct Draw {
     bool alpha_mask;   ///< the material has one
     bool merged_maps;  ///< the normal map holds roughness and metalness, too
     bool unlit;
+    bool changing_uvs;  ///< as in PipelineKey
     bool cull_back;
     VkDescriptorSet material;
     VkDeviceSize vertex_offset;  ///< bytes

@@ -116,8 +116,7 @@ SceneTextures::SceneTextures(const Device& device, const Document& document,
       repeat_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, settings.anisotropy)),
       clamp_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, settings.anisotropy)),
       hidden_beyond_(
-          make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, settings.anisotropy)),
-      one_texel_(make_sampler(device, VK_SAMPLER_ADDRESS_MODE_REPEAT, 1.0f)) {
+          make_sampler(device, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, settings.anisotropy)) {
     std::set<std::uint32_t> needed;
     if (settings.few_kinds) needed = merge_maps(document);
     const auto first_level = [&](std::uint32_t texture) {
@@ -355,10 +354,9 @@ VkDescriptorImageInfo SceneTextures::descriptor(const Document& document, std::s
                                 ? texture.scalar_views[use == MapUse::metalness]
                                 : texture.view;
     const std::uint32_t flags = texture.record.flags;
-    const Sampler& sampler = texture.is_one_texel                 ? one_texel_
-                             : flags & mesh_format::kHiddenBeyond ? hidden_beyond_
-                             : flags & mesh_format::kClampToEdge  ? clamp_
-                                                                  : repeat_;
+    const Sampler& sampler = flags & mesh_format::kHiddenBeyond  ? hidden_beyond_
+                             : flags & mesh_format::kClampToEdge ? clamp_
+                                                                 : repeat_;
     return {sampler.get(), view.get(),
             texture.address ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
 }

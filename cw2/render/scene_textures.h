@@ -81,7 +81,6 @@ class SceneTextures {
     Sampler repeat_;
     Sampler clamp_;
     Sampler hidden_beyond_;
-    Sampler one_texel_;  ///< not anisotropic: where UVs are all the same Mesa 25 would give black
 };
 
 }  // namespace cw2

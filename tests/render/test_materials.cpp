@@ -185,4 +185,80 @@ TEST_F(Materials, UnlitShowsItsBaseColorWhateverTheLight) {
     EXPECT_GT(lit.at(75, 60)[0], color.at(75, 60)[0] / M_PI + 0.01);
 }
 
+/// A ball whose faces have one UV each, in the middle of one of 8 x 8 fields of a palette; every
+/// fourth has none. All maps are palettes; some faces have a mask, some emit.
+std::filesystem::path palette_ball(const std::filesystem::path& folder) {
+    constexpr int kFields = 8, kTexels = 16, kFaces = 24;  // a side; a field's side; a turn
+    const auto palette = [&](const char* name, int channels, int seed) {
+        write_picture(folder / name,
+                      painted(kFields * kTexels, kFields * kTexels, channels, [&](int x, int y) {
+                          const int field = x / kTexels + kFields * (y / kTexels);
+                          std::vector<double> texel;
+                          for (int c = 0; c < channels; ++c)
+                              texel.push_back(0.5 + 0.49 * std::sin(seed + 7 * field + 2 * c));
+                          return texel;
+                      }));
+    };
+    palette("color.png", 3, 0);
+    palette("rough.png", 1, 1);
+    palette("metal.png", 1, 2);
+    palette("glow.png", 3, 3);
+    palette("mask.png", 1, 4);
+    write_picture(folder / "normal.png", painted(4, 4, 3, [](int, int) {
+                      return std::vector{0.6, 0.45, 0.98};
+                  }));
+    std::ofstream mtl(folder / "ball.mtl");
+    const std::string maps =
+        "map_Kd color.png\nmap_Pr rough.png\nmap_Pm metal.png\nnorm normal.png\n";
+    mtl << "newmtl plain\n"
+        << maps << "newmtl cut\nmap_d mask.png\n"
+        << maps << "newmtl glow\nKe 1 1 1\nmap_Ke glow.png\n"
+        << maps;
+    std::ofstream obj(folder / "ball.obj");
+    obj << "mtllib ball.mtl\n";
+    const auto corner = [&](int down, int round) {
+        const double polar = M_PI * down / kFaces, turn = 2.0 * M_PI * round / kFaces;
+        obj << "v " << std::sin(polar) * std::cos(turn) << ' ' << std::cos(polar) << ' '
+            << std::sin(polar) * std::sin(turn) << '\n';
+    };
+    for (int down = 2; down < kFaces - 2; ++down) {
+        for (int round = 0; round < kFaces; ++round) {
+            for (const int right : {0, 1}) {
+                corner(down, round + right);
+                corner(down + 1, round + right);
+            }
+            const int face = down * kFaces + round;
+            obj << "vt " << (face % kFields + 0.5) / kFields << ' '
+                << (face / kFields % kFields + 0.5) / kFields << "\nusemtl "
+                << (face % 3 == 0   ? "plain"
+                    : face % 3 == 1 ? "cut"
+                                    : "glow")
+                << '\n'
+                << (face % 4 == 0 ? "f -4 -2 -1 -3\n" : "f -4/-1 -2/-1 -1/-1 -3/-1\n");
+        }
+    }
+    obj.close();
+    mtl.close();
+    return bake_scene(folder / "ball.obj");
+}
+
+TEST_F(Materials, AnisotropyChangesNothingWhereUvsDoNot) {
+    const std::filesystem::path ball = palette_ball(folder_.path());
+    for (const std::string view : {"shaded", "alpha-mask"}) {
+        const auto draw = [&](const std::string& anisotropy) {
+            return draw_scene(ball, ".exr",
+                              {"--view", view, "--size", "160x160", "--samples", "1",
+                               "--anisotropy", anisotropy});
+        };
+        const Picture without = draw("1"), with = draw("16");
+        int seen = 0;
+        for (std::size_t i = 0; i < with.samples.size(); ++i) {
+            const float truth = without.samples[i];
+            ASSERT_NEAR(with.samples[i], truth, 1e-3 * std::max(1.0f, truth)) << view << ' ' << i;
+            seen += i % 4 == 3 && truth == 1.0f;
+        }
+        EXPECT_GT(seen, 5000);
+    }
+}
+
 }  // namespace
