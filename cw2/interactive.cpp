@@ -302,6 +302,8 @@ class Session {
             title_.set_error({});
             ui_.say({}, false);
             stale_ = true;
+        } catch (const DeviceLost&) {
+            throw;
         } catch (const std::runtime_error& error) {
             // The folders would leave no room in the title.
             report(error.what(), (sources_ / "").string());
@@ -365,7 +367,7 @@ class Session {
         if (!opening_ && watch_.changed()) begin_opening({state_.options().scene, true});
     }
 
-    /// Where something cannot be opened the old scene stays.
+    /// Where something cannot be opened the old scene stays, but a lost device is the end.
     void begin_opening(Wish wish) {
         if (opening_ && opening_->scene.valid()) {
             next_ = std::move(wish);  // nobody waits here for what a thread is loading
@@ -379,6 +381,8 @@ class Session {
                     if (opening_->warning.empty()) opening_->warning = line;
                 });
             go_on_opening();
+        } catch (const DeviceLost&) {
+            throw;
         } catch (const std::runtime_error& error) {
             refuse(error.what());
         }
@@ -403,6 +407,8 @@ class Session {
             opening_.reset();
             title_.set_error({});
             stale_ = true;
+        } catch (const DeviceLost&) {
+            throw;
         } catch (const std::runtime_error& error) {
             refuse(error.what());
         }
@@ -427,6 +433,8 @@ class Session {
                         make_scene(device_, layouts_, std::move(file), settings));
                 } catch (const std::bad_alloc&) {
                     refuse_for_memory(path);
+                } catch (const DeviceLost&) {
+                    throw;
                 } catch (const VulkanError& error) {
                     throw VulkanError(path.string() + ": " + error.what());
                 }

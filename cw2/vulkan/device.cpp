@@ -255,9 +255,10 @@ VkPhysicalDevice best_device(const std::vector<VkPhysicalDevice>& devices, VkSur
 }  // namespace
 
 void check(VkResult result, const char* call) {
-    if (result != VK_SUCCESS) {
-        throw VulkanError(fmt::format("{} failed: {}", call, name_of(result)));
-    }
+    if (result == VK_SUCCESS) return;
+    const std::string message = fmt::format("{} failed: {}", call, name_of(result));
+    if (result == VK_ERROR_DEVICE_LOST) throw DeviceLost(message);
+    throw VulkanError(message);
 }
 
 Instance::Instance(bool validation, const std::vector<const char*>& extensions) {

@@ -20,7 +20,12 @@ class VulkanError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Throws VulkanError naming `call` unless `result` is VK_SUCCESS.
+/// Nothing can be done any more with the device.
+class DeviceLost : public VulkanError {
+    using VulkanError::VulkanError;
+};
+
+/// Throws VulkanError naming `call` unless `result` is VK_SUCCESS; DeviceLost where it says that.
 void check(VkResult result, const char* call);
 
 /// The instance; with validation on, every message of the validation layers (synchronisation

@@ -171,6 +171,8 @@ WINDOW = ["--size", "80x60", "--samples", "4"]
 RELOADING = ["vkAllocateDescriptorSets", "vkAllocateMemory", "vkBindBufferMemory",
              "vkBindImageMemory", "vkCreateBuffer", "vkCreateCommandPool", "vkCreateDescriptorPool",
              "vkCreateImage", "vkCreateImageView"]
+# By these the thread that loads a scene learns of the loss.
+LOADING = ["vkQueueSubmit2", "vkQueueWaitIdle"]
 
 
 def run_files(arguments, old, new, *setting):
@@ -323,6 +325,23 @@ def run_reload(display, *setting):
     return run, wrong
 
 
+def run_loss(display, *setting):
+    """A device that is lost while another file is loaded is the end, which is said once."""
+    run = Run(*setting, display=display.name)
+    run.environment["VULKAN_FAULT_AFTER"] = str(run.folder / "armed")
+    process = run.start([*WINDOW, "scene.cw2mesh", "other.cw2mesh"])
+    user = User(run, process)
+    if user.sees_a_picture():
+        user.tool("key", "Tab", "Tab")  # nothing lies over the picture any more
+        time.sleep(1)  # no frames are drawn
+        (run.folder / "armed").touch()
+        user.tool("key", "Page_Down")
+    wrong = run.finish(process)
+    if getattr(run, "status", 1) == 0:
+        wrong.append("goes on")
+    return run, wrong
+
+
 def check_window(*setting):
     displays = [Display() for _ in range(os.cpu_count())]
     free = list(displays)
@@ -340,6 +359,7 @@ def check_window(*setting):
             assert not wrong and not run.message and run.report.calls, (wrong, run.message)
             faults = [("window", run_window, fault) for fault in faults_of(run.report.calls)]
             faults += [("reload", run_reload, (name, 1, DEVICE)) for name in RELOADING]
+            faults += [("loss", run_loss, (name, 1, LOST)) for name in LOADING]
             run.remove()
             tasks = [(scenario, fault, pool.submit(somewhere, run, *setting, fault))
                      for scenario, run, fault in faults]
