@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <future>
 #include <glm/common.hpp>
 #include <memory>
 #include <optional>
@@ -20,6 +19,7 @@
 #include "cw2/render/image_file.h"
 #include "cw2/render/scene.h"
 #include "cw2/render/shader_compiler.h"
+#include "cw2/scene_opening.h"
 #include "cw2/source_bake.h"
 #include "cw2/window/file_list.h"
 #include "cw2/window/file_watch.h"
@@ -45,8 +45,6 @@ constexpr double kIdleSeconds = 0.25;
 constexpr double kLookSeconds = 0.5;
 /// How often one asks how far a bake is.
 constexpr double kBakeSeconds = 0.05;
-/// How long something may load before one says so.
-constexpr double kPatienceSeconds = 0.3;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -322,16 +320,6 @@ class Session {
         bool is_reload;  ///< of what is shown; camera and light stay
     };
 
-    /// A file on its way there: baked by a process, if it has to be, then loaded by a thread.
-    struct Opening {
-        Wish wish;
-        std::unique_ptr<SourceBake> bake{};
-        std::string warning{};  ///< the first one
-        std::optional<FileWatch> watch{};
-        Clock::time_point loading_since{};
-        std::future<std::unique_ptr<Scene>> scene{};  ///< destroyed first, which waits
-    };
-
     std::unique_ptr<Scene> first_scene() {
         const auto bake = bake_of(asked_, device_, tell_user);
         if (bake) {
@@ -369,41 +357,30 @@ class Session {
 
     /// Where something cannot be opened the old scene stays, but a lost device is the end.
     void begin_opening(Wish wish) {
-        if (opening_ && opening_->scene.valid()) {
+        if (opening_ && opening_->loads()) {
             next_ = std::move(wish);  // nobody waits here for what a thread is loading
             return;
         }
-        opening_.emplace(Opening{.wish = std::move(wish)});
+        wish_ = std::move(wish);
         try {
-            opening_->bake =
-                bake_of(options_for(opening_->wish), device_, [this](const std::string& line) {
-                    tell_user(line);
-                    if (opening_->warning.empty()) opening_->warning = line;
-                });
-            go_on_opening();
-        } catch (const DeviceLost&) {
-            throw;
+            opening_.emplace(device_, layouts_, options_for(wish_));
         } catch (const std::runtime_error& error) {
-            refuse(error.what());
+            return refuse(error.what());
         }
+        go_on_opening();
     }
 
     void go_on_opening() {
-        const std::string name = opening_->wish.scene.filename().string();
         try {
-            if (opening_->bake && !opening_->bake->done(std::chrono::milliseconds(0))) {
-                ui_.say(fmt::format("baking {} {}", name, opening_->bake->progress()), false);
+            std::unique_ptr<Scene> scene = opening_->take();
+            if (!scene) {
+                const std::string progress = opening_->progress();
+                if (progress.empty()) return;
+                ui_.say(progress, false);
                 unshown_ = true;
                 return;
             }
-            if (!opening_->scene.valid()) begin_loading();
-            if (opening_->scene.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
-                if (seconds_since(opening_->loading_since) < kPatienceSeconds) return;
-                ui_.say("loading " + name, false);
-                unshown_ = true;
-                return;
-            }
-            show_opened(opening_->scene.get());
+            show_opened(std::move(scene));
             opening_.reset();
             title_.set_error({});
             stale_ = true;
@@ -415,61 +392,33 @@ class Session {
         if (next_) begin_opening(*std::exchange(next_, std::nullopt));
     }
 
-    void begin_loading() {
-        const SourceBake* const bake = opening_->bake.get();
-        const std::filesystem::path& scene = opening_->wish.scene;
-        if (bake) {
-            opening_->watch.emplace(bake->sources(), bake->read_at());
-        } else if (!opening_->wish.is_reload) {
-            opening_->watch.emplace(std::vector{scene});
-        }
-        opening_->loading_since = Clock::now();
-        opening_->scene = std::async(
-            std::launch::async, [this, path = bake ? bake->baked() : scene,
-                                 settings = texture_settings(state_.options(), device_)] {
-                SceneFile file = read_scene_file(path);
-                try {
-                    return std::make_unique<Scene>(
-                        make_scene(device_, layouts_, std::move(file), settings));
-                } catch (const std::bad_alloc&) {
-                    refuse_for_memory(path);
-                } catch (const DeviceLost&) {
-                    throw;
-                } catch (const VulkanError& error) {
-                    throw VulkanError(path.string() + ": " + error.what());
-                }
-            });
-    }
-
     void show_opened(std::unique_ptr<Scene> scene) {
-        const Wish& wish = opening_->wish;
         presenter_.finish();
         scene_ = std::move(scene);
-        if (opening_->watch) watch_ = std::move(*opening_->watch);
-        reader_.forget(wish.is_reload);
-        if (wish.is_reload) {
+        watch_ = opening_->watch();
+        reader_.forget(wish_.is_reload);
+        if (wish_.is_reload) {
             state_.set_bounds(scene_->bounds());
-            say_opened(wish.scene.filename().string() + " has changed: reloaded");
+            say_opened(wish_.scene.filename().string() + " has changed: reloaded");
             return;
         }
-        ViewerState state(completed(options_for(wish), scene_->start(), scene_->bounds()),
+        ViewerState state(completed(options_for(wish_), scene_->start(), scene_->bounds()),
                           scene_->bounds(), aspect_of(extent_));
         state.set(state.options(), state_.light_moves());
         state_ = std::move(state);
-        title_.set_scene(wish.scene.filename().string(), files_.place());
-        say_opened("opened " + wish.scene.string());
+        title_.set_scene(wish_.scene.filename().string(), files_.place());
+        say_opened("opened " + wish_.scene.string());
     }
 
     void say_opened(const std::string& what) {
-        const std::string& warning = opening_->warning;
+        const std::string& warning = opening_->warning();
         ui_.say(warning.empty() ? what : what + "; " + warning, false);
     }
 
     void refuse(const std::string& error) {
-        const Wish wish = opening_->wish;
         opening_.reset();
-        if (!wish.is_reload) return report(error);
-        report(error, (wish.scene.parent_path() / "").string());
+        if (!wish_.is_reload) return report(error);
+        report(error, (wish_.scene.parent_path() / "").string());
     }
 
     /// False where nothing can be shown now.
@@ -545,7 +494,8 @@ class Session {
     bool unshown_ = true;     ///< the window does not show what it should
     Shot wanted_ = Shot::none;
     bool idle_ = false;  ///< nothing happens until something is done
-    std::optional<Opening> opening_;
+    Wish wish_{};        ///< what is opened
+    std::optional<SceneOpening> opening_;
     std::optional<Wish> next_;  ///< opened after it
     bool ended_ = false;
 };
