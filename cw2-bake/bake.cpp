@@ -18,6 +18,7 @@
 #include "cw2-bake/geometry/compress.h"
 #include "cw2-bake/geometry/normals.h"
 #include "cw2-bake/geometry/quantise.h"
+#include "cw2-bake/geometry/spatial_order.h"
 #include "cw2-bake/geometry/tangents.h"
 #include "cw2-bake/geometry/up_axis.h"
 #include "cw2-bake/geometry/weld.h"
@@ -289,10 +290,13 @@ std::string run_stages(const Settings& settings, const Warn& warn_of, StageClock
     std::optional<FirstEqual> positions(scene.positions);
     generate_normals(scene, *positions, progress.advance());
     progress.begin("weld");
-    FramedTriangles framed = weld(scene, *positions, progress.advance());
+    FramedTriangles framed = jumps_about(scene, *positions)
+                                 ? weld_in_space(scene, *positions, progress.advance())
+                                 : weld(scene, *positions, progress.advance());
     positions.reset();
     progress.begin("tangents");
     add_tangents(scene, framed, progress.advance());
+    RawVector<std::uint32_t>().swap(framed.sources);
     progress.begin("chunks");
     const FramedScene framed_scene{scene, framed};
     const ChunkedScene chunked = make_chunks(framed_scene, budgets, progress.advance());

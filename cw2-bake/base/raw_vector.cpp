@@ -7,8 +7,6 @@
 namespace bake {
 namespace {
 
-constexpr std::uintptr_t kHugePage = 2 << 20;
-
 std::uintptr_t address_of(const void* place) {
     return reinterpret_cast<std::uintptr_t>(place);
 }
@@ -26,13 +24,13 @@ void prefer_huge_pages(void* place, std::size_t size) {
 }
 
 void PageReleaser::release(std::size_t end) {
-    if (end - released_ < 2 * kHugePage) return;
+    if (end - released_ < 2 * unit_) return;
     const auto whole = [&](std::size_t at) {
         const std::uintptr_t address = address_of(array_.data());
-        return (address + at + kHugePage - 1) / kHugePage * kHugePage - address;
+        return (address + at + unit_ - 1) / unit_ * unit_ - address;
     };
     const std::size_t from = whole(released_);
-    const std::size_t to = whole(end) - kHugePage;
+    const std::size_t to = whole(end) - unit_;
     ::madvise(array_.data() + from, to - from, MADV_DONTNEED);
     released_ = to;
 }

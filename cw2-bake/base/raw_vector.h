@@ -10,6 +10,8 @@
 
 namespace bake {
 
+inline constexpr std::size_t kHugePage = 2 << 20;
+
 /// Asks the kernel for huge pages where the `size` bytes at `place` cover such, for they take far
 /// less time to be touched first than as many bytes of ordinary ones. Does nothing for small
 /// arrays: what stays untouched of the last page would be too much memory beside them.
@@ -19,12 +21,15 @@ void prefer_huge_pages(void* place, std::size_t size);
 /// order, before the array itself goes.
 class PageReleaser {
  public:
-    explicit PageReleaser(std::span<std::byte> array) : array_(array) {}
+    /// It goes in pieces of a few `unit`, a power of two and at least a page.
+    explicit PageReleaser(std::span<std::byte> array, std::size_t unit = kHugePage)
+        : array_(array), unit_(unit) {}
     /// What comes before `end`, in bytes, is never read again.
     void release(std::size_t end);
 
  private:
     std::span<std::byte> array_;
+    std::size_t unit_;
     std::size_t released_ = 0;
 };
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
+#include <numeric>
 
 namespace bake {
 namespace {
@@ -22,9 +22,9 @@ std::uint32_t part_of(std::uint64_t hashed, std::uint32_t parts) {
 }  // namespace
 
 /// A slot holds an index, and above it the upper bits of the hash. The first of equal values is
-/// found as all of a part are met in their order. Returns whether any two are equal.
-bool FirstEqual::find(const std::vector<glm::vec3>& values, std::uint32_t part, std::uint32_t parts,
-                      std::span<std::uint32_t> slots) {
+/// found as all of a part are met in their order. Returns how many differ.
+std::size_t FirstEqual::find(const std::vector<glm::vec3>& values, std::uint32_t part,
+                             std::uint32_t parts, std::span<std::uint32_t> slots) {
     // More than the last index: no slot in use has all bits set.
     constexpr std::uint32_t kEmpty = 0xFFFF'FFFF;
     const auto index_bits = static_cast<std::uint32_t>(std::bit_ceil(values.size() + 1) - 1);
@@ -53,10 +53,10 @@ bool FirstEqual::find(const std::vector<glm::vec3>& values, std::uint32_t part, 
     };
     std::array<Waiting, kAhead> waiting;
     std::size_t met = 0;
-    bool some_are_equal = false;
+    std::size_t differ = 0;
     const auto settle = [&](const Waiting& one) {
         first_[one.index] = find_or_insert(one.hashed, one.index);
-        some_are_equal |= first_[one.index] != one.index;
+        differ += first_[one.index] == one.index;
     };
     const auto count = static_cast<std::uint32_t>(values.size());
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -68,7 +68,7 @@ bool FirstEqual::find(const std::vector<glm::vec3>& values, std::uint32_t part, 
         __builtin_prefetch(&slots[place_of(hashed)]);
     }
     for (std::size_t i = met - std::min(met, kAhead); i < met; ++i) settle(waiting[i % kAhead]);
-    return some_are_equal;
+    return differ;
 }
 
 /// Values of one part of the hashes each are told apart by one task.
@@ -93,14 +93,14 @@ FirstEqual::FirstEqual(const std::vector<glm::vec3>& values) : first_(values.siz
         first_slot[part + 1] = first_slot[part] + count * 3 / 2 + 4;
     }
     RawVector<std::uint32_t> slots(first_slot[parts]);
-    std::vector<char> some_are_equal(parts);
+    std::vector<std::size_t> differ(parts);
     tbb::parallel_for(std::uint32_t{0}, parts, [&](std::uint32_t part) {
-        some_are_equal[part] = find(
+        differ[part] = find(
             values, part, parts,
             std::span(slots).subspan(first_slot[part], first_slot[part + 1] - first_slot[part]));
     });
-    if (std::ranges::none_of(some_are_equal, std::identity()))
-        RawVector<std::uint32_t>().swap(first_);
+    count_ = std::reduce(differ.begin(), differ.end());
+    if (count_ == values.size()) RawVector<std::uint32_t>().swap(first_);
 }
 
 }  // namespace bake

@@ -76,12 +76,15 @@ class FirstEqual {
 
     bool all_differ() const { return first_.empty(); }
     std::uint32_t operator[](std::uint32_t i) const { return first_.empty() ? i : first_[i]; }
+    /// Of those that differ.
+    std::size_t count() const { return count_; }
 
  private:
-    bool find(const std::vector<glm::vec3>& values, std::uint32_t part, std::uint32_t parts,
-              std::span<std::uint32_t> slots);
+    std::size_t find(const std::vector<glm::vec3>& values, std::uint32_t part, std::uint32_t parts,
+                     std::span<std::uint32_t> slots);
 
     RawVector<std::uint32_t> first_;  // empty where no two are equal
+    std::size_t count_ = 0;
 };
 
 }  // namespace bake

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <tuple>
 
 #include "common/every_cpu.h"
 
@@ -85,6 +84,28 @@ void CornerSlots::assign(const FramedTriangles& triangles, const CornerLists& li
     }
 }
 
+/// MikkTSpace's answers hang on the order of the faces in the source.
+std::span<const std::uint32_t> CornerSlots::in_source_order(
+    const FramedTriangles& triangles, std::span<const std::uint32_t> corners) {
+    const std::uint32_t* const sources = triangles.sources.data();
+    std::uint32_t before = 0;
+    bool in_order = true;
+    for (const std::uint32_t corner : corners) {
+        const std::uint32_t source = sources[corner / 3];
+        in_order &= source >= before;
+        before = source;
+    }
+    if (in_order) return corners;
+    ordered_.clear();
+    for (const std::uint32_t corner : corners)
+        ordered_.push_back(std::uint64_t{sources[corner / 3]} << 32 | corner);
+    std::ranges::sort(ordered_);
+    corners_.clear();
+    for (const std::uint64_t corner : ordered_)
+        corners_.push_back(static_cast<std::uint32_t>(corner));
+    return corners_;
+}
+
 /// The slots of a vertex, from `first` on; `corners` are all those there, ascending.
 void CornerSlots::add(const FramedTriangles& triangles, std::span<const std::uint32_t> corners,
                       std::uint32_t first) {
@@ -92,6 +113,7 @@ void CornerSlots::add(const FramedTriangles& triangles, std::span<const std::uin
     constexpr std::uint32_t kNext[] = {1, 2, 0};
     constexpr std::uint32_t kPrevious[] = {2, 0, 1};
     const std::uint32_t end = first + static_cast<std::uint32_t>(corners.size());
+    if (!triangles.sources.empty()) corners = in_source_order(triangles, corners);
     Slot* slot = slots.data() + first;
     std::uint32_t degenerate = 0;
     for (const std::uint32_t corner : corners) {
@@ -111,11 +133,9 @@ void CornerSlots::add(const FramedTriangles& triangles, std::span<const std::uin
         degenerate += slot->degenerate;
         ++slot;
     }
-    if (degenerate != 0) {
-        std::sort(slots.begin() + first, slots.begin() + end, [](const Slot& a, const Slot& b) {
-            return std::tie(a.degenerate, a.corner) < std::tie(b.degenerate, b.corner);
-        });
-    }
+    if (degenerate != 0)
+        std::stable_sort(slots.begin() + first, slots.begin() + end,
+                         [](const Slot& a, const Slot& b) { return a.degenerate < b.degenerate; });
     vertices.push_back({first, end - degenerate, end});
 }
 

@@ -57,8 +57,14 @@ struct CornerSlots {
                 std::span<const std::uint32_t> of_vertices);
 
  private:
+    std::span<const std::uint32_t> in_source_order(const FramedTriangles& triangles,
+                                                   std::span<const std::uint32_t> corners);
     void add(const FramedTriangles& triangles, std::span<const std::uint32_t> corners,
              std::uint32_t first);
+
+    // Of one vertex:
+    std::vector<std::uint64_t> ordered_;  ///< a face's number in the source, below it its corner
+    std::vector<std::uint32_t> corners_;
 };
 
 /// Which slots at a vertex are neighbours: faces that share an edge there, one leaving along it and

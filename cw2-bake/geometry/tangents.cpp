@@ -223,7 +223,7 @@ class TangentBlock {
 
     void take_given(const VertexSlots& vertex) {
         for (std::uint32_t slot = vertex.first; slot < vertex.end; ++slot) {
-            const vec4& given = scene_.tangents[slots_.slots[slot].corner];
+            const vec4& given = scene_.tangents[triangles_.source_of(slots_.slots[slot].corner)];
             if (given.w != 0.0f) tangents_[slot] = given;
         }
     }
@@ -233,7 +233,7 @@ class TangentBlock {
         const std::uint32_t own = slots_.slots[vertex.first].own;
         const bool colored = !scene_.colors.empty();
         const auto color_of = [&](std::uint32_t slot) {
-            return scene_.colors[slots_.slots[slot].corner];
+            return scene_.colors[triangles_.source_of(slots_.slots[slot].corner)];
         };
         FramedVertex& kept = triangles_.vertices[own];
         kept.tangent = tangents_[vertex.first];

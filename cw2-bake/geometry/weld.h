@@ -21,6 +21,14 @@ struct FramedTriangles {
     RawVector<FramedVertex> vertices;
     RawVector<std::uint32_t> colors;   ///< one a vertex, as in SourceScene; empty if that has none
     RawVector<std::uint32_t> indices;  ///< one a corner of the scene
+    /// Each triangle's number in the source; empty if they are in that order.
+    RawVector<std::uint32_t> sources;
+
+    /// Which corner of the source a corner is.
+    std::uint32_t source_of(std::uint32_t corner) const {
+        const std::uint32_t triangle = corner / 3;
+        return sources.empty() ? corner : corner + 3 * (sources[triangle] - triangle);
+    }
 };
 
 /// Corners share a vertex where they are equal in position, normal, UV and material. Of equal
@@ -29,5 +37,11 @@ struct FramedTriangles {
 /// place of their memory, bit by bit.
 FramedTriangles weld(SourceScene& scene, const FirstEqual& positions,
                      const Advance& advance = kUnwatched);
+
+/// The same vertices for triangles in an order of space, see SpatialOrder, and so are the vertices
+/// and, of most scenes, their attributes. The scene's materials of triangles are in that order,
+/// too, not what it has one a corner.
+FramedTriangles weld_in_space(SourceScene& scene, const FirstEqual& positions,
+                              const Advance& advance = kUnwatched);
 
 }  // namespace bake

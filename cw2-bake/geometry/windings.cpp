@@ -17,16 +17,19 @@ Windings::Windings(const SourceScene& scene, const FramedTriangles& triangles,
     preserving_.assign(unusable_.size(), -1);
     SlotLinks links;
     for (const VertexSlots& vertex : slots.vertices) links.link(slots, vertex);
-    grow_groups(slots, links, spokes);
+    grow_groups(triangles, slots, links, spokes);
 }
 
-void Windings::grow_groups(const CornerSlots& slots, const SlotLinks& links, const Spokes& spokes) {
+void Windings::grow_groups(const FramedTriangles& triangles, const CornerSlots& slots,
+                           const SlotLinks& links, const Spokes& spokes) {
     std::vector<std::uint32_t> starts;
     for (const VertexSlots& vertex : slots.vertices) {
         for (std::uint32_t slot = vertex.first; slot < vertex.degenerate; ++slot)
             if (spokes.usable(slot)) starts.push_back(slot);
     }
-    std::ranges::sort(starts, {}, [&](std::uint32_t slot) { return slots.slots[slot].corner; });
+    std::ranges::sort(starts, {}, [&](std::uint32_t slot) {
+        return triangles.source_of(slots.slots[slot].corner);
+    });
 
     std::vector<bool> grouped(slots.slots.size(), false);
     for (const std::uint32_t start : starts) {

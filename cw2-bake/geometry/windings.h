@@ -12,7 +12,8 @@
 namespace bake {
 
 /// Faces without usable UVs have the winding of the group that reaches them first, with whichever
-/// corner; groups grow one after the other, in the order of their first corner.
+/// corner; groups grow one after the other, in the order of their first corner in
+/// the source.
 class Windings {
  public:
     /// `mixed` are the vertices, ascending, where faces with usable UVs meet faces without: nothing
@@ -25,7 +26,8 @@ class Windings {
     bool preserving(std::uint32_t face, bool otherwise) const;
 
  private:
-    void grow_groups(const CornerSlots& slots, const SlotLinks& links, const Spokes& spokes);
+    void grow_groups(const FramedTriangles& triangles, const CornerSlots& slots,
+                     const SlotLinks& links, const Spokes& spokes);
     /// Where the face is in unusable_, or its end.
     std::size_t find(std::uint32_t face) const;
 

@@ -7,7 +7,7 @@
 # Debian's gltfpack (0.18, 0.22) makes no tangents. What a native one that does would take is
 # estimated: as much less than npm's as it takes less than npm's of its own version.
 # Usage: tests/bench/bench_bake.sh [OBJ...]    default: the demo scene and sheets of 103,058 and
-# 1,033,922 triangles, for which the target make_meshes is built
+# 1,033,922 triangles, one of the latter in no order, for which the target make_meshes is built
 # RUNS=N sets how often each runs [5]; NATIVE=COMMAND a gltfpack that is not on the PATH, maybe one
 # that its loader starts. Wants node, npm and GNU time. A benchmark, no test.
 set -euo pipefail
@@ -136,7 +136,8 @@ if [[ ${#scenes[@]} -eq 0 ]]; then
     for side in 227 719; do
         build/release/bin/make_meshes sheet $side >"$work/sheet$side.obj"
     done
-    scenes=(build/release/assets/demo/courtyard.obj "$work/sheet227.obj" "$work/sheet719.obj")
+    build/release/bin/make_meshes shuffled 719 >"$work/shuffled719.obj"
+    scenes=(build/release/assets/demo/courtyard.obj "$work"/{sheet227,sheet719,shuffled719}.obj)
 fi
 for scene in "${scenes[@]}"; do
     echo "$scene: $(stat -c %s "$scene") bytes, $runs runs each"

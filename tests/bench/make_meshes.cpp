@@ -2,17 +2,20 @@
 //
 // Meshes for the benchmarks, the same on every machine with this library's random numbers:
 //   sheet  a wavy one of SIDE^2 x 2 triangles, all smooth
+//   shuffled  the same, its triangles and vertices in no order
 //   noise  a ball of SIDE^2 x 2 triangles under seven octaves of noise, its vertices jittered
 //   scan   heights with noise in them, SIDE^2 x 2 triangles, no UVs
 //   cad    boxes and cylinders of SIZE triangles, most of them along the axes
 //   cards  SIZE leaves of two triangles, each with one of eight parts of a texture
 //   rooms  SIZE bumpy balls of 707^2 x 2 triangles, side by side, all smooth
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <string_view>
 #include <utility>
@@ -122,18 +125,28 @@ void print_smooth(const std::array<int, 3>& t) {
     print_smooth_behind(0, t);
 }
 
-void make_sheet(int side) {
-    for (int y = 0; y <= side; ++y) {
-        for (int x = 0; x <= side; ++x) {
-            const double u = static_cast<double>(x) / side;
-            const double v = static_cast<double>(y) / side;
-            print_position({10 * u, 0.1 * std::sin(9 * u) * std::cos(7 * v), -10 * v});
-            print_uv(u, v);
-            print_normal(unit({-0.9 * std::cos(9 * u) * std::cos(7 * v), 1,
-                               -0.7 * std::sin(9 * u) * std::sin(7 * v)}));
-        }
+void make_sheet(int side, bool shuffled) {
+    const auto vertices = static_cast<std::size_t>((side + 1) * (side + 1));
+    std::vector<int> order(vertices);
+    std::iota(order.begin(), order.end(), 0);
+    if (shuffled) std::shuffle(order.begin(), order.end(), generator);
+    std::vector<int> place(vertices);
+    for (std::size_t i = 0; i < vertices; ++i) {
+        place[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
+        const double u = static_cast<double>(order[i] % (side + 1)) / side;
+        const double v = static_cast<double>(order[i] / (side + 1)) / side;
+        print_position({10 * u, 0.1 * std::sin(9 * u) * std::cos(7 * v), -10 * v});
+        print_uv(u, v);
+        print_normal(unit({-0.9 * std::cos(9 * u) * std::cos(7 * v), 1,
+                           -0.7 * std::sin(9 * u) * std::sin(7 * v)}));
     }
-    for_each_triangle(side, print_smooth);
+    std::vector<std::array<int, 3>> triangles;
+    for_each_triangle(side, [&](std::array<int, 3> t) {
+        for (int& i : t) i = place[static_cast<std::size_t>(i)];
+        triangles.push_back(t);
+    });
+    if (shuffled) std::shuffle(triangles.begin(), triangles.end(), generator);
+    for (const auto& t : triangles) print_smooth(t);
 }
 
 void make_noise(int side) {
@@ -317,8 +330,8 @@ int main(int argc, char** argv) {
     const int size = argc == 3 ? std::atoi(argv[2]) : 0;
     if (size < 1) return 2;
     std::printf("mtllib meshes.mtl\nusemtl m\n");  // without one gltfpack makes no tangents
-    if (kind == "sheet") {
-        make_sheet(size);
+    if (kind == "sheet" || kind == "shuffled") {
+        make_sheet(size, kind == "shuffled");
     } else if (kind == "noise") {
         make_noise(size);
     } else if (kind == "scan") {

@@ -53,13 +53,15 @@ bake::SourceScene renumber(const bake::SourceScene& scene, std::uint32_t seed) {
     return result;
 }
 
-std::vector<glm::vec4> our_tangents(const bake::SourceScene& scene) {
+std::vector<glm::vec4> our_tangents(const bake::SourceScene& scene, bool in_space) {
     bake::SourceScene rest = scene;
-    bake::FramedTriangles framed = bake::weld(rest, bake::FirstEqual(rest.positions));
+    const bake::FirstEqual positions(rest.positions);
+    bake::FramedTriangles framed =
+        in_space ? bake::weld_in_space(rest, positions) : bake::weld(rest, positions);
     bake::add_tangents(rest, framed);
-    std::vector<glm::vec4> tangents;
-    for (const std::uint32_t vertex : framed.indices)
-        tangents.push_back(framed.vertices[vertex].tangent);
+    std::vector<glm::vec4> tangents(framed.indices.size());
+    for (std::uint32_t c = 0; c < tangents.size(); ++c)
+        tangents[framed.source_of(c)] = framed.vertices[framed.indices[c]].tangent;
     return tangents;
 }
 

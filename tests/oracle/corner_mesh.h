@@ -26,8 +26,8 @@ bake::SourceScene scene_of(const CornerMesh& mesh);
 /// The same triangles in the same order over attributes in another order.
 bake::SourceScene renumber(const bake::SourceScene& scene, std::uint32_t seed);
 
-/// Our tangents of a scene, one a corner.
-std::vector<glm::vec4> our_tangents(const bake::SourceScene& scene);
+/// Our tangents of a scene, one a corner, of triangles in the order of the source or of space.
+std::vector<glm::vec4> our_tangents(const bake::SourceScene& scene, bool in_space = false);
 
 /// The meshes that are small enough to have recorded results, about 15,000 corners in all.
 std::vector<CornerMesh> small_meshes();

@@ -114,6 +114,8 @@ int check_properties(const bake::SourceScene& scene, const Tangents& ours) {
            "unit length, sign +1 or -1");
     expect(same_bits(ours, oracle::our_tangents(oracle::renumber(scene, 99))),
            "the same bits over attributes in another order");
+    expect(same_bits(ours, oracle::our_tangents(scene, true)),
+           "the same bits for triangles in an order of space");
     const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
     expect(same_bits(ours, oracle::our_tangents(scene)), "the same bits on one thread");
     return failures;

@@ -117,6 +117,9 @@ TEST(Stages, TellAllOfTheirWork) {
     const bake::FirstEqual positions(scene.positions);
     bake::generate_normals(scene, positions, told.advance());
     EXPECT_NEAR(told.take(), 1.0, kRounding);
+    bake::SourceScene copy = scene;
+    bake::weld_in_space(copy, positions, told.advance());
+    EXPECT_NEAR(told.take(), 1.0, kRounding);
     bake::FramedTriangles framed = bake::weld(scene, positions, told.advance());
     EXPECT_NEAR(told.take(), 1.0, kRounding);
     bake::add_tangents(scene, framed, told.advance());
