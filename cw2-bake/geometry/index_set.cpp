@@ -73,7 +73,7 @@ std::size_t FirstEqual::find(const std::vector<glm::vec3>& values, std::uint32_t
 
 /// Values of one part of the hashes each are told apart by one task.
 FirstEqual::FirstEqual(const std::vector<glm::vec3>& values) : first_(values.size()) {
-    constexpr std::size_t kWorthATask = 1 << 14;
+    constexpr std::size_t kWorthATask = 1 << 17;
     const auto parts = static_cast<std::uint32_t>(std::clamp<std::size_t>(
         values.size() / kWorthATask, 1,
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));

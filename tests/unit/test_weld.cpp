@@ -89,7 +89,7 @@ TEST(Weld, MakesOneVertexOfCornersThatAreEqualInValueAndMaterial) {
 TEST(Weld, TakesTheFirstPositionOfEachValueWhateverTheNumberOfThreads) {
     std::mt19937 random(2);
     // Enough positions for several tasks.
-    const SourceScene scene = random_scene(random, 30'000, 70'000, 90);
+    const SourceScene scene = random_scene(random, 30'000, 270'000, 90);
     std::map<std::array<float, 3>, std::uint32_t> first;
     for (std::uint32_t i = 0; i < scene.positions.size(); ++i) {
         const glm::vec3& p = scene.positions[i];
