@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads .cw2mesh files of format version 7, as docs/format.md describes them.
+"""Reads .cw2mesh files of format version 8, as docs/format.md describes them.
 
     import read_cw2mesh
     scene = read_cw2mesh.read("model.cw2mesh")
@@ -17,7 +17,7 @@ import math
 import struct
 import sys
 
-VERSION = 7
+VERSION = 8
 SECTIONS = ("scene", "meshes", "chunks", "materials", "textures", "sources", "strings", "vertices",
             "indices", "texels", "encoded_vertices", "encoded_indices")
 MAP_USES = ("base_color", "roughness", "metalness", "normal", "alpha_mask", "emission")
@@ -520,10 +520,14 @@ def decode_words(stream, at, neighbours, numbers, size, out, offset, stride):
 ONE = 32768  # the unit of ratios
 ANGLES = 16383  # 45 degrees
 
+# Frame models.
+X_TANGENT_MODELS, BY_ANGLE_MODELS = (1, 4, 5), (3, 5)
+SURFACE_MODELS = 2  # the first of those
+
 
 @functools.lru_cache(None)
 def ratio_tables():
-    """The ratio of each angle, the angle of each ratio, and the secant of every eighth ratio."""
+    """The ratio of each angle, and the angle of each ratio."""
     unit = 1 << 30
     first, *coefficients = (int(single(c) * unit) for c in TAN_COEFFICIENTS)
     ratio = []
@@ -540,8 +544,7 @@ def ratio_tables():
         while ratio[a] < r:
             a += 1
         angle.append(a)
-    secant = [math.isqrt(ONE * ONE + r * r - 1) + 1 for r in range(0, ONE + 1, 8)]
-    return ratio, angle, secant
+    return ratio, angle
 
 
 def truncated(a, b):
@@ -552,8 +555,9 @@ def truncated(a, b):
 class FrameDecoder:
     """Frames of quat48 or quat32, as differences of digits to expected ones."""
 
-    def __init__(self, form, model, neighbours, normals):
-        self.is_wide, self.model, self.neighbours, self.normals = form == "quat48", model, neighbours, normals
+    def __init__(self, form, model, neighbours, rotations):
+        self.is_wide, self.neighbours, self.rotations = form == "quat48", neighbours, rotations
+        self.has_partner = model in X_TANGENT_MODELS
         self.zero, self.levels = (16383, 32768) if self.is_wide else (405, 811)
         self.frames = []  # largest component + 4 left-handed, and three digits
 
@@ -564,15 +568,11 @@ class FrameDecoder:
             angle = (angle * ANGLES + self.zero // 2) // self.zero
         return ratio_tables()[0][angle] * (-1 if level < 0 else 1)
 
-    def digit_of_angle(self, angle):
-        level = abs(angle)
+    def digit_of(self, ratio):
+        level = ratio_tables()[1][abs(ratio)]
         if not self.is_wide:
             level = (level * self.zero + ANGLES // 2) // ANGLES
-        return self.zero + (-level if angle < 0 else level)
-
-    def digit_of(self, ratio):
-        angle = ratio_tables()[1][abs(ratio)]
-        return self.digit_of_angle(-angle if ratio < 0 else angle)
+        return self.zero + (-level if ratio < 0 else level)
 
     def with_largest(self, frame, largest):
         """The digits of the same rotation if another component is taken for the largest."""
@@ -581,25 +581,22 @@ class FrameDecoder:
             return digits
         q = [self.ratio_of(digit) for digit in digits]
         q.insert(top & 3, ONE)
-        divisor = q.pop(largest) or 1
-        return [self.digit_of(min(max(truncated(c * ONE, divisor), -ONE), ONE)) for c in q]
+        return self.of_quaternion(q, largest)
 
-    def of_normal(self, normal, largest):
-        """The digits of a frame with this normal whose tangent is the x axis, but one."""
-        normal = [(c + 2 ** 63) % 2 ** 64 - 2 ** 63 for c in normal]
-        shift = max(max(abs(c) for c in normal).bit_length() - 15, 0)
-        x, y, z = (abs(c) >> shift for c in normal)
-        angle, length = polar(z, y)
-        half_b = polar(length, x)[0] // 2
-        half_a = (4 * ANGLES - angle if normal[2] < 0 else angle) // 2
-        first = min(2 * ANGLES - half_a if largest == 0 else half_a, ANGLES)
-        digit_a = self.digit_of_angle(-first if normal[1] > 0 else first)
-        digit_b = self.digit_of_angle(-half_b if normal[0] < 0 else half_b)
-        return [self.zero, digit_b, digit_a] if largest == 0 else [digit_a, digit_b, self.zero]
+    def of_quaternion(self, q, largest):
+        others = q[:largest] + q[largest + 1:]
+        divisor = q[largest] or 1
+        return [self.digit_of(min(max(truncated(c * ONE, divisor), -ONE), ONE)) for c in others]
+
+    def of_rotation(self, rotation, largest):
+        top, q = rotation
+        if top & 3 == largest:
+            return [self.digit_of(c) for k, c in enumerate(q) if k != largest]
+        return self.of_quaternion(q, largest)
 
     def expected(self, i, largest):
-        if self.model == 2 and largest in (0, 3):
-            return self.of_normal(self.normals[i], largest)
+        if self.rotations:
+            return self.of_rotation(self.rotations[i], largest)
         if i == 0:
             return [self.zero] * 3
         a, b, c = (self.frames[n] for n in self.neighbours[i])
@@ -610,10 +607,13 @@ class FrameDecoder:
 
     def decode(self, tops, differences):
         for i, top in enumerate(tops):
-            top ^= self.frames[self.neighbours[i][0]][0] if i else 0
+            if self.rotations:
+                top ^= self.rotations[i][0]
+            elif i:
+                top ^= self.frames[self.neighbours[i][0]][0]
             largest = top & 3
             expected = self.expected(i, largest)
-            if self.model == 0:
+            if not self.has_partner:
                 digits = [(e + d[i]) % self.levels for e, d in zip(expected, differences)]
             else:
                 other = largest ^ 1
@@ -636,26 +636,118 @@ class FrameDecoder:
                 struct.pack_into("<I", out, i * stride + offset, code & 0xFFFFFFFF)
 
 
-def polar(x, y):
-    """The angle to the x axis and the length of (x, y), neither negative."""
-    _, angles, secants = ratio_tables()
-    longer = max(x, y, 1)
-    ratio = min(x, y) * ONE // longer
-    angle = 2 * ANGLES - angles[ratio] if y > x else angles[ratio]
-    return angle, longer * (secants[ratio // 8] // 2) // (ONE // 2)
+# --- What triangles tell of frames ------------------------------------------------------------------
 
 
-def sum_normals(indices, vertex_count, out, stride):
-    """The sum of the normals of each vertex's triangles, from quantised positions."""
-    places = [struct.unpack_from("<3H", out, i * stride) for i in range(vertex_count)]
-    sums = [[0, 0, 0] for _ in places]
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def shortened(v):
+    """Halved until all components have 14 bits and a sign."""
+    while any(not -16384 <= c < 16384 for c in v):
+        v = [c >> 1 for c in v]
+    return list(v)
+
+
+def nearly_unit(v):
+    """Of a length of about 2^14."""
+    square, bits = dot(v, v) | 1, 15
+    while square < 1 << 28:
+        square, bits = square << 2, bits - 1
+    x = square >> 16
+    y = 43759 - (x * (53827 - (x * 26846 >> 14)) >> 14)
+    inverse_root = y * (49152 - (x * (y * y >> 14) >> 14)) >> 15
+    return [c * inverse_root >> bits for c in v]
+
+
+def unit(v):
+    u = nearly_unit(v)
+    factor = 49152 - (dot(u, u) >> 14)
+    return [c * factor >> 15 for c in u]
+
+
+def angle_of(cosine):
+    c = min(max(cosine, -16384), 16384)
+    square = c * c >> 14
+    series = 17207 - (square * (2785 - (square * 8582 >> 14)) >> 14)
+    return max(25736 - (c * series >> 14), 0)
+
+
+def with_range_of_14_bits(triples):
+    """The numbers of three corners, halved until they differ by less than 2^14, and how often."""
+    bits, largest = 0, max(max(t) - min(t) for t in triples)
+    while largest >> bits >= 1 << 14:
+        bits += 1
+    return [[c >> bits for c in t] for t in triples], bits
+
+
+def triangle_parts(places, model, area_shift):
+    """What a triangle adds to its corners: a normal and a tangent, and the angles that they count
+    by there; with the tangent, whether UVs are mirrored."""
+    (xs, ys, zs), bits = with_range_of_14_bits([[p[k] for p in places] for k in range(3)])
+    p, q, r = zip(xs, ys, zs)
+    edges = [[b - a for a, b in zip(*ends)] for ends in ((q, r), (r, p), (p, q))]
+    normal = cross(edges[1], edges[2])
+    if model in BY_ANGLE_MODELS:
+        normal = nearly_unit(shortened(normal))
+    else:
+        down = area_shift - 2 * bits
+        normal = [c >> down if down >= 0 else c << -down for c in normal]
+    units = [nearly_unit(edge) for edge in edges]
+    angles = [angle_of(-(dot(units[k - 2], units[k - 1]) >> 14)) for k in range(3)]
+    (u, v), _ = with_range_of_14_bits([[p[k] for p in places] for k in (3, 4)])
+    winding = (u[1] - u[0]) * (v[2] - v[0]) - (u[2] - u[0]) * (v[1] - v[0])
+    sign = (winding > 0) - (winding < 0)
+    along_u = [((v[2] - v[0]) * a + (v[1] - v[0]) * b) * sign for a, b in zip(edges[2], edges[1])]
+    return normal, nearly_unit(shortened(along_u)) + [sign << 14], angles
+
+
+def sum_surfaces(indices, count, model, area_shift, out, uv_at, stride):
+    """The sums of the normals and of the tangents of each vertex's triangles."""
+    places = [struct.unpack_from("<3H", out, i * stride) + struct.unpack_from("<2H", out, i * stride + uv_at)
+              for i in range(count)]
+    sums = [([0] * 3, [0] * 4) for _ in places]
     for i in range(0, len(indices), 3):
-        p, q, r = (places[index] for index in indices[i:i + 3])
-        u, v = [b - a for a, b in zip(p, q)], [b - a for a, b in zip(p, r)]
-        for index in indices[i:i + 3]:
+        corners = indices[i:i + 3]
+        normal, tangent, angles = triangle_parts([places[c] for c in corners], model, area_shift)
+        for corner, angle in zip(corners, angles):
             for k in range(3):
-                sums[index][k] += u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2]
-    return sums
+                sums[corner][0][k] += normal[k] * angle >> 14 if model in BY_ANGLE_MODELS else normal[k]
+            for k in range(4 if model not in X_TANGENT_MODELS else 0):
+                sums[corner][1][k] += tangent[k] * angle >> 14
+    signed = lambda c: (c + 2 ** 31) % 2 ** 32 - 2 ** 31
+    return [([signed(c) for c in normal], [signed(c) for c in tangent]) for normal, tangent in sums]
+
+
+def rotation_of(normal, tangent):
+    """The largest component's number + 4 left-handed, and all four over the largest in units of 1 /
+    32768, of the quaternion of (t, cross(n, t), n)."""
+    n, t = unit(shortened(normal)), tangent[:3]
+    if all(c in (0, -1) for c in t):
+        t[0] = 1 << 14
+    t = nearly_unit(shortened(t))
+    along = dot(t, n) >> 14
+    t = unit(shortened([a - (b * along >> 14) for a, b in zip(t, n)]))
+    b = [c >> 14 for c in cross(n, t)]
+    xy, xz, yz = t[1] + b[0], t[2] + n[0], b[2] + n[1]
+    xw, yw, zw = b[2] - n[1], n[0] - t[2], t[1] - b[0]
+    one = 1 << 14
+    rows = [[one + t[0] - b[1] - n[2], xy, xz, xw], [xy, one - t[0] + b[1] - n[2], yz, yw],
+            [xz, yz, one - t[0] - b[1] + n[2], zw], [xw, yw, zw, one + t[0] + b[1] + n[2]]]
+    largest = max(range(4), key=lambda k: rows[k][k])
+    best = rows[largest][largest]
+    x = best >> 2
+    y = 90124 - (x * (102269 - (x * 40908 >> 14)) >> 14)
+    y = 4 * (32758 - (x * y >> 14))
+    for _ in range(2):
+        y = y * (32768 - (best * y >> 16)) >> 14
+    components = [min(max(c * y >> 15, -ONE), ONE) for c in rows[largest]]
+    return largest + (4 if tangent[3] > 0 else 0), components
 
 
 def decode_vertices(mesh, indices, neighbours, part):
@@ -667,19 +759,21 @@ def decode_vertices(mesh, indices, neighbours, part):
     words += [(color_at, 4, 1)] if color == "rgba8" else []
     words += {"half3": [(frame_at, 3, 2)], "f32": [(frame_at, 4, 4)]}.get(frame, [])
     in_digits = frame in ("quat48", "quat32")
-    size = 1 + count * (sum(numbers * size for _, numbers, size in words) + 7 * in_digits)
+    size = 2 + count * (sum(numbers * size for _, numbers, size in words) + 7 * in_digits)
     stream = unwrap(part, size)
     require(len(stream) == size, "encoded geometry is damaged")
-    model, at = stream[0], 1
-    require(model == 0 or in_digits and (model == 1 or model == 2 and position == "quantised"),
-            "encoded geometry is damaged")
+    model, area_shift, at = stream[0], stream[1], 2
+    has_surface = model >= SURFACE_MODELS
+    require(area_shift <= 15 and model <= 5 and (model == 0 or in_digits) and
+            (not has_surface or position == uv == "quantised"), "encoded geometry is damaged")
     out = bytearray(count * stride)
     for offset, numbers, size in words:
         decode_words(stream, at, neighbours, numbers, size, out, offset, stride)
         at += numbers * size * count
     if in_digits:
-        normals = sum_normals(indices, count, out, stride) if model == 2 else None
-        frames = FrameDecoder(frame, model, neighbours, normals)
+        rotations = [rotation_of(*sums) for sums in sum_surfaces(indices, count, model, area_shift, out, uv_at, stride)
+                     ] if has_surface else None
+        frames = FrameDecoder(frame, model, neighbours, rotations)
         frames.decode(stream[at:at + count], read_numbers(stream, at + count, count, 3, 2))
         frames.pack(out, frame_at, stride)
     return out

@@ -34,7 +34,7 @@ namespace mesh_format {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 inline constexpr std::array<char, 8> kMagic{'C', 'W', '2', 'M', 'E', 'S', 'H', '\0'};
-inline constexpr std::uint32_t kVersion = 7;
+inline constexpr std::uint32_t kVersion = 8;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 /// A mesh's vertices are addressed by 16-bit indices.
 inline constexpr std::uint32_t kMaxMeshVertices = 65'536;
@@ -128,18 +128,24 @@ enum TriangleEnd : std::uint32_t {
 /// the first, or in negative floats all of them, are inverted.
 ///
 /// A frame in digits, see tangent_frame.h, has seven planes. The first holds the number of the
-/// largest component, + 4 if left-handed, xor that of neighbour a (of vertex 0: xor 0). Then come
-/// three numbers of two bytes as above, but d is modulo the levels of a digit, 32,768 or 811, and
-/// the smallest such. They are of the digits in their order, or else of those but others[partner()]
-/// and last of that one. Expected is what FrameModel says.
+/// largest component, + 4 if left-handed, xor the expected one. Then come three numbers of two
+/// bytes as above, but d is modulo the levels of a digit, 32,768 or 811, and the smallest such.
+/// They are of the digits in their order, or else of those but others[partner()] and last of that
+/// one. Expected is what FrameModel says.
 enum class FrameModel : std::uint8_t {
-    /// Of each digit a + b - c modulo 2^16, or FrameCode::rebased() of a where not all three have
-    /// this vertex's largest component; of vertex 0 the digit of ratio 0. The one for other forms.
+    /// Of the first byte that of neighbour a (of vertex 0: 0). Of each digit a + b - c modulo 2^16,
+    /// or FrameCode::rebased() of a where not all three have this vertex's largest component; of
+    /// vertex 0 the digit of ratio 0. The one for other forms.
     neighbours,
     x_tangent,  ///< the same, but others[partner()] last: FrameCode::of_x_tangent()
-    /// As x_tangent, but the first two FrameCode::of_turn() of sum_normals(), unless the largest
-    /// component is y or z. Only for quantised positions.
-    x_tangent_of_positions,
+    /// FrameCode::of_rotation() of sum_surfaces(), by area or by angle. This and the next two only
+    /// where positions and UVs are quantised.
+    surface_by_area,
+    surface_by_angle,
+    /// The same without UVs; others[partner()] last: FrameCode::of_x_tangent()
+    x_tangent_by_area,
+    x_tangent_by_angle,
+    count
 };
 
 /// How a vertex holds its texture coordinate; v = 0 is the top row of the image.

@@ -6,29 +6,27 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <span>
 
 #include "mesh-format/layout.h"
+#include "mesh-format/surface.h"
 
 namespace mesh_format {
 
-/// A direction, of any length.
-using Normal = std::array<std::int64_t, 3>;
+/// Whether the last digit of a frame is what the other two give.
+constexpr bool has_partner(FrameModel model) {
+    return model == FrameModel::x_tangent || model == FrameModel::x_tangent_by_area ||
+           model == FrameModel::x_tangent_by_angle;
+}
 
-/// Sets for each vertex the sum of its triangles' normals, each as long as two times the
-/// triangle's area, modulo 2^64; of positions in the quantised form, `stride` bytes apart.
-void sum_normals(std::span<const std::uint16_t> indices, const std::byte* positions,
-                 std::size_t stride, std::span<Normal> sums);
+/// Whether frames are predicted from surfaces; else from neighbours.
+constexpr bool has_surface(FrameModel model) {
+    return model >= FrameModel::surface_by_area;
+}
 
-/// What turns the axes to a frame whose tangent is the x axis, made orthogonal to the normal: half
-/// angles about the x axis and before that about the y axis, in units of 45 degrees / 16,383, and
-/// -1 where they are negative.
-struct Turn {
-    int about_x, about_y;
-    int x_sign, y_sign;
-};
-
-Turn turn_to(const Normal& normal);
+constexpr SurfaceModel surface_of(FrameModel model, int area_shift) {
+    return {model == FrameModel::surface_by_angle || model == FrameModel::x_tangent_by_angle,
+            !has_partner(model), area_shift};
+}
 
 /// One for each component of a quaternion but the largest.
 using Digits = std::array<std::int16_t, 3>;
@@ -67,9 +65,10 @@ struct FrameCode {
     /// `first` and `second` are the other two digits, in their order.
     static int of_x_tangent(int first, int second);
 
-    /// Sets `others` to the digits of such a frame by its turn, except for
-    /// others[partner(largest)]. Component `largest` is x or w, as it always is in such frames.
-    static void of_turn(const Turn& turn, std::uint32_t largest, Digits& others);
+    /// Sets `others` to the digits of rotation `k` if component `largest` is taken for the largest
+    /// one.
+    static void of_rotation(const Rotations& rotations, std::size_t k, std::uint32_t largest,
+                            Digits& others);
 };
 
 /// The place among the others of that component whose product with the largest is xy or zw.

@@ -5,19 +5,17 @@
 #include <cstdint>
 #include <cstring>
 
+#include "mesh-format/rows.h"
+#include "mesh-format/surface.h"
 #include "mesh-format/vertex_prediction.h"
 
 namespace mesh_format {
 
 namespace {
 
-/// The numbers of a vertex: position, digits, UV. Registers of all processors hold as many.
-using Row = std::uint16_t __attribute__((vector_size(16)));
 using SignedRow = std::int16_t __attribute__((vector_size(16)));
 using Plane = std::uint8_t __attribute__((vector_size(16)));
 
-constexpr std::size_t kNumbers = 8;
-constexpr std::size_t kFirstDigit = 3;
 constexpr std::size_t kPartner = 5;
 constexpr std::size_t kBlock = 16;  // vertices
 
@@ -26,22 +24,7 @@ Row unzigzag(Row row) {
     return row >> 1 ^ -(row & 1);
 }
 
-/// Rows of the numbers of eight vertices, of which each is given the first number of all, the
-/// second, ...
-void transpose(std::array<Row, kNumbers>& rows) {
-    std::array<Row, kNumbers> half;
-    // Thrice each row is put between those of the one four further.
-    for (int round = 0; round < 3; ++round) {
-        for (std::size_t i = 0; i < 4; ++i) {
-            half[2 * i] = __builtin_shufflevector(rows[i], rows[i + 4], 0, 8, 1, 9, 2, 10, 3, 11);
-            half[2 * i + 1] =
-                __builtin_shufflevector(rows[i], rows[i + 4], 4, 12, 5, 13, 6, 14, 7, 15);
-        }
-        rows = half;
-    }
-}
-
-template <FrameForm kForm, FrameModel kModel>
+template <FrameForm kForm, bool kHasPartner, bool kHasSurface>
 class Rows {
  public:
     Rows(std::size_t count, std::span<const Neighbours> neighbours, Scratch& scratch)
@@ -50,9 +33,10 @@ class Rows {
           rows_(scratch.take<Row>(count)),
           tops_(scratch.take<std::uint8_t>(count)),
           partners_(kHasPartner ? scratch.take<std::uint16_t>(count) : nullptr),
-          normals_(kHasNormals ? scratch.take<Normal>(count) : nullptr) {}
+          surfaces_(kHasSurface ? scratch.take<Surface>(count + kBlock) : nullptr) {}
 
-    void decode(const std::byte* planes, std::span<const std::uint16_t> indices, std::byte* out) {
+    void decode(const std::byte* planes, std::span<const std::uint16_t> indices,
+                const SurfaceModel& model, std::byte* out) {
         const std::byte* const tops = planes + kTopPlane * count_;
         // Step by step for a block: so processors work on many vertices at once.
         for (std::size_t first = 0; first < count_; first += kBlock) {
@@ -60,44 +44,44 @@ class Rows {
             std::array<Row, kBlock> differences;
             read(planes, first, size, differences);
             for (std::size_t k = 0; k < size; ++k) {
-                if constexpr (kHasNormals)
+                if constexpr (kHasSurface)
                     add_place(first + k, differences[k]);
                 else
                     add(first + k, differences[k], to_top(tops[first + k]));
             }
-            if constexpr (!kHasNormals) finish(first, size, out);
+            if constexpr (!kHasSurface) finish(first, size, out);
         }
-        if constexpr (!kHasNormals) return;
-        sum_normals(indices, reinterpret_cast<const std::byte*>(rows_), sizeof(Row),
-                    {normals_, count_});
+        if constexpr (!kHasSurface) return;
+        sum_surfaces(indices, rows_, model, {surfaces_, count_ + kBlock});
         for (std::size_t first = 0; first < count_; first += kBlock) {
             const std::size_t size = std::min(kBlock, count_ - first);
-            std::array<Turn, kBlock> turns;
-            for (std::size_t k = 0; k < size; ++k) turns[k] = turn_to(normals_[first + k]);
-            for (std::size_t k = 0; k < size; ++k)
-                add_frame(first + k, turns[k], to_top(tops[first + k]));
+            std::array<Rotations, kBlock / Rotations::kCount> rotations;
+            for (std::size_t k = 0; k < rotations.size(); ++k)
+                rotations_of(surfaces_ + first + k * Rotations::kCount, rotations[k]);
+            for (std::size_t k = 0; k < size; ++k) {
+                add_frame(first + k, rotations[k / Rotations::kCount], k % Rotations::kCount,
+                          to_top(tops[first + k]));
+            }
             finish(first, size, out);
         }
     }
 
  private:
     using Code = FrameCode<kForm>;
-    static constexpr bool kHasPartner = kModel != FrameModel::neighbours;
-    static constexpr bool kHasNormals = kModel == FrameModel::x_tangent_of_positions;
     static constexpr std::size_t kDigits = kHasPartner ? 2 : 3;  // of a row that are predicted
     static constexpr std::size_t kStride =
         vertex_layout({PositionForm::quantised, kForm, UvForm::quantised, ColorForm::none}).stride;
     static constexpr std::size_t kTopPlane = 10;
     // Of each number, its low and its high byte.
-    static constexpr std::array<std::array<std::size_t, 2>, kNumbers> kPlanes{
+    static constexpr std::array<std::array<std::size_t, 2>, kRowNumbers> kPlanes{
         {{0, 3}, {1, 4}, {2, 5}, {11, 14}, {12, 15}, {13, 16}, {6, 8}, {7, 9}}};
 
     /// The differences of `size` vertices.
     void read(const std::byte* planes, std::size_t first, std::size_t size,
               std::array<Row, kBlock>& out) const {
-        std::array<Row, kNumbers> low;
-        std::array<Row, kNumbers> high;
-        for (std::size_t k = 0; k < kNumbers; ++k) {
+        std::array<Row, kRowNumbers> low;
+        std::array<Row, kRowNumbers> high;
+        for (std::size_t k = 0; k < kRowNumbers; ++k) {
             Plane bytes[2] = {};
             for (std::size_t byte = 0; byte < 2; ++byte) {
                 const std::byte* const in = planes + kPlanes[k][byte] * count_ + first;
@@ -116,7 +100,7 @@ class Rows {
         transpose(low);
         transpose(high);
         std::ranges::copy(low, out.begin());
-        std::ranges::copy(high, out.begin() + kNumbers);
+        std::ranges::copy(high, out.begin() + kRowNumbers);
     }
 
     static std::uint8_t to_top(std::byte byte) { return std::to_integer<std::uint8_t>(byte); }
@@ -160,19 +144,16 @@ class Rows {
     /// Position and UV; leaves the digits' differences in the row.
     void add_place(std::size_t i, Row difference) {
         constexpr Row kDigitsOnly{0, 0, 0, 0xFFFF, 0xFFFF, 0xFFFF, 0, 0};
-        partners_[i] = difference[kPartner];
+        if constexpr (kHasPartner) partners_[i] = difference[kPartner];
         rows_[i] = (sum(i, difference) & ~kDigitsOnly) | (difference & kDigitsOnly);
     }
 
-    /// The frame, once the turn to the normal is known.
-    void add_frame(std::size_t i, const Turn& turn, std::uint8_t change) {
-        const bool differs = set_top(i, change);
+    /// The frame, once what the surface tells of it is known: rotation k of some.
+    void add_frame(std::size_t i, const Rotations& rotations, std::size_t k, std::uint8_t change) {
+        tops_[i] = static_cast<std::uint8_t>(rotations.tops[k] ^ change);
         const std::uint32_t largest = tops_[i] & 3u;
         Digits expected;
-        if (largest == 0 || largest == 3)
-            Code::of_turn(turn, largest, expected);
-        else
-            expect(i, largest, differs, expected);
+        Code::of_rotation(rotations, k, largest, expected);
         Row row = rows_[i];
         set_digits(row, expected, largest, row);
         rows_[i] = row;
@@ -313,27 +294,27 @@ class Rows {
     Row* rows_;
     std::uint8_t* tops_;
     std::uint16_t* partners_;  // the digits that the others of a vertex give
-    Normal* normals_;          // if frames are predicted from them
+    Surface* surfaces_;        // if frames are predicted from them
 };
 
 }  // namespace
 
-void decode_rows(const MeshRecord& mesh, FrameModel model, std::span<const std::uint16_t> indices,
-                 std::span<const Neighbours> neighbours, const std::byte* planes,
-                 std::byte* vertices, Scratch& scratch) {
-    const auto decode = [&]<FrameForm kForm, FrameModel kModel>() {
-        Rows<kForm, kModel>(mesh.vertex_count, neighbours, scratch)
-            .decode(planes, indices, vertices);
+void decode_rows(const MeshRecord& mesh, FrameModel model, int area_shift,
+                 std::span<const std::uint16_t> indices, std::span<const Neighbours> neighbours,
+                 const std::byte* planes, std::byte* vertices, Scratch& scratch) {
+    const auto decode = [&]<FrameForm kForm, bool kHasPartner, bool kHasSurface>() {
+        Rows<kForm, kHasPartner, kHasSurface>(mesh.vertex_count, neighbours, scratch)
+            .decode(planes, indices, surface_of(model, area_shift), vertices);
     };
     const auto decode_form = [&]<FrameForm kForm>() {
-        switch (model) {
-            case FrameModel::neighbours:
-                return decode.template operator()<kForm, FrameModel::neighbours>();
-            case FrameModel::x_tangent:
-                return decode.template operator()<kForm, FrameModel::x_tangent>();
-            case FrameModel::x_tangent_of_positions:
-                return decode.template operator()<kForm, FrameModel::x_tangent_of_positions>();
-        }
+        if (has_partner(model) && has_surface(model))
+            decode.template operator()<kForm, true, true>();
+        else if (has_partner(model))
+            decode.template operator()<kForm, true, false>();
+        else if (has_surface(model))
+            decode.template operator()<kForm, false, true>();
+        else
+            decode.template operator()<kForm, false, false>();
     };
     if (mesh.forms.frame == FrameForm::quat48)
         decode_form.operator()<FrameForm::quat48>();

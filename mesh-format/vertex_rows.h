@@ -18,8 +18,8 @@ constexpr bool are_rows(const VertexForms& forms) {
 }
 
 /// What decode_vertices() does, with the stream's planes.
-void decode_rows(const MeshRecord& mesh, FrameModel model, std::span<const std::uint16_t> indices,
-                 std::span<const Neighbours> neighbours, const std::byte* planes,
-                 std::byte* vertices, Scratch& scratch);
+void decode_rows(const MeshRecord& mesh, FrameModel model, int area_shift,
+                 std::span<const std::uint16_t> indices, std::span<const Neighbours> neighbours,
+                 const std::byte* planes, std::byte* vertices, Scratch& scratch);
 
 }  // namespace mesh_format

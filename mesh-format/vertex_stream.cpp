@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "mesh-format/surface.h"
 #include "mesh-format/vertex_prediction.h"
 #include "mesh-format/vertex_rows.h"
 #include "mesh-format/zigzag.h"
@@ -15,6 +16,12 @@ namespace mesh_format {
 namespace {
 
 constexpr std::uint32_t kFramePlanes = 7;  // of quat48 and quat32
+
+/// How much more a bit of a model's streams counts: they take twice the time to decode where frames
+/// come from surfaces, or once and a half where those have no UVs.
+constexpr double cost_of(FrameModel model) {
+    return !has_surface(model) ? 1 : has_partner(model) ? 16.0 / 15 : 8.0 / 7;
+}
 
 bool in_digits(FrameForm form) {
     return form == FrameForm::quat48 || form == FrameForm::quat32;
@@ -124,17 +131,17 @@ class Words {
 };
 
 /// The tangent frames of all vertices, if they are of a form in digits.
-template <FrameForm kForm, FrameModel kModel>
+template <FrameForm kForm, bool kHasPartner, bool kHasSurface>
 class Frames {
  public:
     static constexpr std::size_t kPlanes = kFramePlanes;
 
-    /// `normals` are for the model that uses them.
+    /// `surfaces` are for models that use them, for whole Rotations.
     Frames(std::size_t stride, std::span<const Neighbours> neighbours,
-           std::span<const Normal> normals)
+           std::span<const Surface> surfaces)
         : stride_(stride),
           neighbours_(neighbours),
-          normals_(normals),
+          surfaces_(surfaces),
           frames_(neighbours.size()),
           tops_(neighbours.size()) {
         for (auto& each : words_) each.resize(neighbours.size());
@@ -167,15 +174,16 @@ class Frames {
     /// A vertex's frame to what it differs from the expected one by, or the other way.
     template <bool kEncode>
     void code(std::size_t i) {
+        if (kHasSurface && i % Rotations::kCount == 0) rotations_of(&surfaces_[i], rotations_);
         FrameDigits& frame = frames_[i];
-        const std::uint16_t top_before = i > 0 ? frames_[neighbours_[i].a].top : 0;
+        const std::uint16_t top = expected_top(i);
         if constexpr (kEncode)
-            tops_[i] = static_cast<std::uint8_t>(frame.top ^ top_before);
+            tops_[i] = static_cast<std::uint8_t>(frame.top ^ top);
         else
-            frame.top = tops_[i] ^ top_before;
+            frame.top = tops_[i] ^ top;
         Digits expected;
         expect(i, expected);
-        if constexpr (kModel != FrameModel::neighbours) {
+        if constexpr (kHasPartner) {
             const std::uint32_t place = partner(frame.top & 3u);
             const std::uint32_t first = place == 0 ? 1 : 0;
             const std::uint32_t second = place == 2 ? 1 : 2;
@@ -190,11 +198,17 @@ class Frames {
         }
     }
 
+    std::uint16_t expected_top(std::size_t i) const {
+        if constexpr (kHasSurface)
+            return static_cast<std::uint16_t>(rotations_.tops[i % Rotations::kCount]);
+        return i > 0 ? frames_[neighbours_[i].a].top : 0;
+    }
+
     /// Modulo 2^16.
     void expect(std::size_t i, Digits& expected) const {
         const std::uint32_t largest = frames_[i].top & 3u;
-        if (kModel == FrameModel::x_tangent_of_positions && (largest == 0 || largest == 3))
-            return Code::of_turn(turn_to(normals_[i]), largest, expected);
+        if constexpr (kHasSurface)
+            return Code::of_rotation(rotations_, i % Rotations::kCount, largest, expected);
         if (i == 0) return expected.fill(Code::kZero);
         const Neighbours& at = neighbours_[i];
         const FrameDigits& a = frames_[at.a];
@@ -222,7 +236,8 @@ class Frames {
 
     std::size_t stride_;
     std::span<const Neighbours> neighbours_;
-    std::span<const Normal> normals_;
+    std::span<const Surface> surfaces_;
+    Rotations rotations_{};  // of the vertices at hand
     std::vector<FrameDigits> frames_;
     std::vector<std::uint8_t> tops_;  // what differs between a frame's and its neighbour's
     std::array<std::vector<std::uint16_t>, 3> words_;
@@ -251,27 +266,41 @@ void for_each_words(const VertexForms& forms, std::span<const Neighbours> neighb
     if (forms.frame == FrameForm::f32) words.template operator()<uint32_t, 4>(layout.frame_offset);
 }
 
+/// Positions and UVs, both quantised.
+std::vector<Row> rows_of(const MeshRecord& mesh, const std::byte* vertices) {
+    const VertexLayout layout = vertex_layout(mesh.forms);
+    std::vector<Row> rows(mesh.vertex_count);
+    for (Row& row : rows) {
+        std::array<std::uint16_t, kRowNumbers> numbers{};
+        std::memcpy(numbers.data(), vertices, position_bytes(PositionForm::quantised));
+        std::memcpy(&numbers[kFirstUv], vertices + layout.uv_offset, uv_bytes(UvForm::quantised));
+        std::memcpy(&row, numbers.data(), sizeof row);
+        vertices += layout.stride;
+    }
+    return rows;
+}
+
 /// Calls use(frames) for frames in digits.
 template <typename Use>
 void with_frames(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
-                 const std::byte* vertices, FrameModel model,
+                 const std::byte* vertices, FrameModel model, int area_shift,
                  std::span<const Neighbours> neighbours, Use use) {
     const std::size_t stride = vertex_layout(mesh.forms).stride;
-    std::vector<Normal> normals;
-    if (model == FrameModel::x_tangent_of_positions) {
-        normals.resize(mesh.vertex_count);
-        sum_normals(indices, vertices, stride, normals);
+    std::vector<Surface> surfaces;
+    if (has_surface(model)) {
+        surfaces.resize(mesh.vertex_count + Rotations::kCount);
+        sum_surfaces(indices, rows_of(mesh, vertices).data(), surface_of(model, area_shift),
+                     surfaces);
     }
     const auto frames = [&]<FrameForm kForm>() {
-        switch (model) {
-            case FrameModel::neighbours:
-                return use(Frames<kForm, FrameModel::neighbours>(stride, neighbours, normals));
-            case FrameModel::x_tangent:
-                return use(Frames<kForm, FrameModel::x_tangent>(stride, neighbours, normals));
-            case FrameModel::x_tangent_of_positions:
-                return use(
-                    Frames<kForm, FrameModel::x_tangent_of_positions>(stride, neighbours, normals));
-        }
+        if (has_partner(model) && has_surface(model))
+            use(Frames<kForm, true, true>(stride, neighbours, surfaces));
+        else if (has_partner(model))
+            use(Frames<kForm, true, false>(stride, neighbours, surfaces));
+        else if (has_surface(model))
+            use(Frames<kForm, false, true>(stride, neighbours, surfaces));
+        else
+            use(Frames<kForm, false, false>(stride, neighbours, surfaces));
     };
     if (mesh.forms.frame == FrameForm::quat48)
         frames.template operator()<FrameForm::quat48>();
@@ -279,12 +308,15 @@ void with_frames(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
         frames.template operator()<FrameForm::quat32>();
 }
 
+bool has_rows(const VertexForms& forms) {
+    return forms.position == PositionForm::quantised && forms.uv == UvForm::quantised;
+}
+
 /// Whether a stream of the mesh may say so.
 bool allows(const VertexForms& forms, FrameModel model) {
     if (model == FrameModel::neighbours) return true;
-    return in_digits(forms.frame) &&
-           (model == FrameModel::x_tangent || (model == FrameModel::x_tangent_of_positions &&
-                                               forms.position == PositionForm::quantised));
+    return model < FrameModel::count && in_digits(forms.frame) &&
+           (!has_surface(model) || has_rows(forms));
 }
 
 /// About how many bits planes will take.
@@ -298,7 +330,7 @@ std::size_t bits_of(std::span<const std::byte> planes) {
 }  // namespace
 
 std::size_t vertex_stream_bytes(const MeshRecord& mesh) {
-    return 1 + std::size_t{mesh.vertex_count} * plane_count(mesh.forms);
+    return kVertexStreamHead + std::size_t{mesh.vertex_count} * plane_count(mesh.forms);
 }
 
 std::vector<std::byte> encode_vertices(const MeshRecord& mesh,
@@ -306,23 +338,27 @@ std::vector<std::byte> encode_vertices(const MeshRecord& mesh,
                                        std::span<const Neighbours> neighbours,
                                        const std::byte* vertices) {
     std::vector<std::byte> stream(vertex_stream_bytes(mesh));
-    std::byte* planes = stream.data() + 1;
+    std::byte* planes = stream.data() + kVertexStreamHead;
     for_each_words(mesh.forms, neighbours, [&](auto part, std::uint32_t offset) {
         part.encode(vertices + offset, planes);
         planes += part.kPlanes * mesh.vertex_count;
     });
     if (!in_digits(mesh.forms.frame)) return stream;
-    std::size_t fewest_bits = std::numeric_limits<std::size_t>::max();
+    const std::size_t other_bits = bits_of({stream.data() + kVertexStreamHead, planes});
+    const int area_shift =
+        has_rows(mesh.forms) ? fitting_area_shift(indices, rows_of(mesh, vertices).data()) : 0;
+    stream[1] = static_cast<std::byte>(area_shift);
+    double least_cost = std::numeric_limits<double>::max();
     std::vector<std::byte> candidate(std::size_t{kFramePlanes} * mesh.vertex_count);
-    for (const FrameModel model :
-         {FrameModel::neighbours, FrameModel::x_tangent, FrameModel::x_tangent_of_positions}) {
+    for (std::uint8_t number = 0; number < std::uint8_t(FrameModel::count); ++number) {
+        const FrameModel model{number};
         if (!allows(mesh.forms, model)) continue;
-        with_frames(mesh, indices, vertices, model, neighbours, [&](auto frames) {
+        with_frames(mesh, indices, vertices, model, area_shift, neighbours, [&](auto frames) {
             frames.encode(vertices + vertex_layout(mesh.forms).frame_offset, candidate.data());
         });
-        const std::size_t bits = bits_of(candidate);
-        if (bits >= fewest_bits) continue;
-        fewest_bits = bits;
+        const double cost = static_cast<double>(other_bits + bits_of(candidate)) * cost_of(model);
+        if (cost >= least_cost) continue;
+        least_cost = cost;
         stream[0] = static_cast<std::byte>(model);
         std::ranges::copy(candidate, planes);
     }
@@ -333,10 +369,11 @@ bool decode_vertices(const MeshRecord& mesh, std::span<const std::uint16_t> indi
                      std::span<const Neighbours> neighbours, const std::byte* stream,
                      std::byte* vertices, Scratch& scratch) {
     const auto model = static_cast<FrameModel>(stream[0]);
-    if (!allows(mesh.forms, model)) return false;
-    const std::byte* planes = stream + 1;
+    const int area_shift = std::to_integer<int>(stream[1]);
+    if (!allows(mesh.forms, model) || area_shift > kMaxAreaShift) return false;
+    const std::byte* planes = stream + kVertexStreamHead;
     if (are_rows(mesh.forms)) {
-        decode_rows(mesh, model, indices, neighbours, planes, vertices, scratch);
+        decode_rows(mesh, model, area_shift, indices, neighbours, planes, vertices, scratch);
         return true;
     }
     for_each_words(mesh.forms, neighbours, [&](auto part, std::uint32_t offset) {
@@ -344,7 +381,7 @@ bool decode_vertices(const MeshRecord& mesh, std::span<const std::uint16_t> indi
         planes += part.kPlanes * mesh.vertex_count;
     });
     if (in_digits(mesh.forms.frame)) {
-        with_frames(mesh, indices, vertices, model, neighbours, [&](auto frames) {
+        with_frames(mesh, indices, vertices, model, area_shift, neighbours, [&](auto frames) {
             frames.decode(planes, vertices + vertex_layout(mesh.forms).frame_offset);
         });
     }

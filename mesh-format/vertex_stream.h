@@ -12,6 +12,9 @@
 
 namespace mesh_format {
 
+/// Bytes of a stream before its planes.
+inline constexpr std::size_t kVertexStreamHead = 2;
+
 /// Bytes of a mesh's stream.
 std::size_t vertex_stream_bytes(const MeshRecord& mesh);
 

@@ -20,6 +20,7 @@ common/encode_png.*     | zlib.h
 mesh-format/*           | mesh-format/*
 mesh-format/tangent_frame.cpp | common/every_cpu.h
 mesh-format/frame_rotation.h | common/every_cpu.h
+mesh-format/surface.cpp | common/every_cpu.h
 mesh-format/decode.cpp  | zstd.h
 cw2-bake/*              | common/* mesh-format/* glm/* fmt/* tbb/* CLI/* meshoptimizer.h zstd.h xxhash.h
 cw2-bake/inspection.cpp | nlohmann/json.hpp

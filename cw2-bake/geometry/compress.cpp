@@ -67,8 +67,9 @@ Parts encode(const PackedGeometry& geometry, const MeshRecord& mesh) {
         mesh, indices, neighbours, geometry.vertices.data() + mesh.vertex_offset);
     const std::size_t codes = mesh.index_count / 3;
     const std::size_t numbers = (index_stream.size() - codes) / 2;
-    // The first plane goes with the byte before it.
-    return {zstd_frame(vertex_stream, 1 + mesh.vertex_count, mesh.vertex_count),
+    // The first plane goes with what is before it.
+    const std::size_t first = mesh_format::kVertexStreamHead + mesh.vertex_count;
+    return {zstd_frame(vertex_stream, first, mesh.vertex_count),
             zstd_frame(index_stream, codes, numbers)};
 }
 

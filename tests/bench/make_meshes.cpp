@@ -3,8 +3,9 @@
 // Meshes for the benchmarks, the same on every machine with this library's random numbers:
 //   sheet  a wavy one of SIDE^2 x 2 triangles, all smooth
 //   shuffled  the same, its triangles and vertices in no order
-//   noise  a ball of SIDE^2 x 2 triangles under seven octaves of noise, its vertices jittered
-//   scan   heights with noise in them, SIDE^2 x 2 triangles, no UVs
+//   noise  a ball of SIDE^2 x 2 triangles under seven octaves of noise, its vertices jittered; its
+//          normals are those of its triangles, by area
+//   scan   heights with noise in them, SIDE^2 x 2 triangles, no UVs; normals the same
 //   cad    boxes and cylinders of SIZE triangles, most of them along the axes
 //   cards  SIZE leaves of two triangles, each with one of eight parts of a texture
 //   rooms  SIZE bumpy balls of 707^2 x 2 triangles, side by side, all smooth
@@ -149,12 +150,21 @@ void make_sheet(int side, bool shuffled) {
     for (const auto& t : triangles) print_smooth(t);
 }
 
+/// The sum of each vertex's triangles' normals, each as long as two times the area.
+std::vector<Vector> normals_of(const std::vector<Vector>& positions, int side) {
+    std::vector<Vector> normals(positions.size());
+    for_each_triangle(side, [&](const std::array<int, 3>& t) {
+        const Vector& p = positions[static_cast<std::size_t>(t[0])];
+        const Vector n = cross(positions[static_cast<std::size_t>(t[1])] - p,
+                               positions[static_cast<std::size_t>(t[2])] - p);
+        for (const int i : t)
+            normals[static_cast<std::size_t>(i)] = normals[static_cast<std::size_t>(i)] + n;
+    });
+    return normals;
+}
+
 void make_noise(int side) {
-    const auto at = [](double polar, double around) {
-        const Vector d{std::sin(polar) * std::cos(around), std::cos(polar),
-                       std::sin(polar) * std::sin(around)};
-        return (1 + 0.35 * octaves(2.5 * d + Vector{5, 5, 5}, 7)) * d;
-    };
+    std::vector<Vector> positions;
     for (int y = 0; y <= side; ++y) {
         for (int x = 0; x <= side; ++x) {
             const double jitter = x > 0 && x < side && y > 0 && y < side ? 0.5 : 0;
@@ -162,15 +172,14 @@ void make_noise(int side) {
             const double v = (y + jitter * (random01() - 0.5)) / side;
             const double polar = kPi * (0.02 + 0.96 * v);
             const double around = 2 * kPi * u;
-            constexpr double kStep = 1e-3;
-            const Vector p = at(polar, around);
-            const Vector n = unit(cross(at(polar, around + kStep) - at(polar, around - kStep),
-                                        at(polar + kStep, around) - at(polar - kStep, around)));
-            print_position(p);
+            const Vector d{std::sin(polar) * std::cos(around), std::cos(polar),
+                           std::sin(polar) * std::sin(around)};
+            positions.push_back((1 + 0.35 * octaves(2.5 * d + Vector{5, 5, 5}, 7)) * d);
+            print_position(positions.back());
             print_uv(u, 1 - v);
-            print_normal(dot(n, p) < 0 ? -1.0 * n : n);
         }
     }
+    for (const Vector& normal : normals_of(positions, side)) print_normal(unit(normal));
     for_each_triangle(side, print_smooth);
 }
 
@@ -184,17 +193,10 @@ void make_scan(int side) {
             positions.push_back({u, 0.3 * octaves({4 * u, 4 * v, 3}, 8) + error, v});
         }
     }
-    std::vector<Vector> normals(positions.size());
-    for_each_triangle(side, [&](const std::array<int, 3>& t) {
-        const Vector& p = positions[static_cast<std::size_t>(t[0])];
-        const Vector n = cross(positions[static_cast<std::size_t>(t[2])] - p,
-                               positions[static_cast<std::size_t>(t[1])] - p);
-        for (const int i : t)
-            normals[static_cast<std::size_t>(i)] = normals[static_cast<std::size_t>(i)] + n;
-    });
+    const std::vector<Vector> normals = normals_of(positions, side);
     for (std::size_t i = 0; i < positions.size(); ++i) {
         print_position(positions[i]);
-        print_normal(unit(normals[i]));
+        print_normal(unit(-1.0 * normals[i]));
     }
     for_each_triangle(side, [](const std::array<int, 3>& t) {
         std::printf("f %d//%d %d//%d %d//%d\n", t[0] + 1, t[0] + 1, t[2] + 1, t[2] + 1, t[1] + 1,

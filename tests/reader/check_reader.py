@@ -27,8 +27,8 @@ BAKE, DUMP = sys.argv[1:3]
 
 def write_scene(folder):
     """A bumpy sphere whose UVs are mirrored on one half and whose place is no round number, a
-    second material with a mask and vertex colours, a smooth sheet without UVs, and textures of odd
-    sizes."""
+    second material with a mask and vertex colours, a smooth sheet without UVs, rough ones with
+    normals by area and by angle, with and without UVs, and textures of odd sizes."""
     random.seed(1)
     rows, columns, lines = 24, 40, ["mtllib scene.mtl", "usemtl ball"]
     for i, j in itertools.product(range(rows + 1), range(columns + 1)):
@@ -51,11 +51,14 @@ def write_scene(folder):
     for i, j in itertools.product(range(29), range(29)):
         corners = (30 * i + j, 30 * i + j + 1, 30 * i + j + 31, 30 * i + j + 30)
         lines.append("f " + " ".join(str(first + k) for k in corners))
+    for by_angle, has_uvs in itertools.product((False, True), repeat=2):
+        lines += [f"usemtl rough{2 * by_angle + has_uvs}", *rough_sheet(len(lines), by_angle, has_uvs)]
     lines.append("")
     (folder / "scene.obj").write_text("\n".join(lines))
     (folder / "scene.mtl").write_text(
         "newmtl ball\nmap_Kd color.png\nmap_Pr rough.png\nnorm normal.png\n"
-        "newmtl leaf\nKd 0.5 0.6 0.7\nmap_d mask.png\nmap_Ke glow.png\nnewmtl sheet\n")
+        "newmtl leaf\nKd 0.5 0.6 0.7\nmap_d mask.png\nmap_Ke glow.png\nnewmtl sheet\n"
+        "newmtl rough0\nnewmtl rough1\nnewmtl rough2\nnewmtl rough3\n")
     draw = check_documents.write_png
     draw(folder / "color.png", 22, lambda x, y: (100 + 2 * x, 80 + 3 * x, 60 + x))
     draw(folder / "rough.png", 13, lambda x, y: (19 * x,) * 3)
@@ -64,6 +67,40 @@ def write_scene(folder):
     draw(folder / "glow.png", 190, lambda x, y: (40 + 30 * (x % 4), 60, 80) if y % 4 < 2 else
          (80, 200, 40 + 30 * (x % 4)))
     draw(folder / "mask.png", 9, lambda x, y: (255 * (x > y),) * 3)
+
+
+def rough_sheet(seed, by_angle, has_uvs):
+    """Lines of an OBJ, with relative indices."""
+    chance, side = random.Random(seed), 16
+    places = [(j + 0.6 * chance.random(), i + 0.6 * chance.random(), 0.5 * chance.random())
+              for i, j in itertools.product(range(side), repeat=2)]
+    faces = []
+    for i, j in itertools.product(range(side - 1), repeat=2):
+        a, b, c, d = (side * i + j, side * i + j + 1, side * i + j + side, side * i + j + side + 1)
+        faces += [(a, b, d), (a, d, c)]
+    normals = [[0.0] * 3 for _ in places]
+    for face in faces:
+        for k, corner in enumerate(face):
+            p, q, r = (places[face[m]] for m in (k, k - 2, k - 1))
+            u, v = [b - a for a, b in zip(p, q)], [b - a for a, b in zip(p, r)]
+            normal = [u[m - 2] * v[m - 1] - u[m - 1] * v[m - 2] for m in range(3)]
+            size, along = math.hypot(*normal), sum(a * b for a, b in zip(u, v))
+            weight = math.atan2(size, along) / size if by_angle else 1
+            normals[corner] = [a + weight * b for a, b in zip(normals[corner], normal)]
+    lines = ["v %f %f %f" % place for place in places]
+    lines += ["vt %f %f" % (x / side, y / side + 0.2 * chance.random() / side) for x, y, _ in places]
+    lines += ["vn %f %f %f" % tuple(c / math.hypot(*normal) for c in normal) for normal in normals]
+    form = "{0}/{0}/{0}" if has_uvs else "{0}//{0}"
+    return lines + ["f " + " ".join(form.format(corner - side * side) for corner in face) for face in faces]
+
+
+def raw_zstd_frame(data):
+    """A frame of RFC 8878 that holds bytes as they are."""
+    frame, size = struct.pack("<IBI", 0xFD2FB528, 0xA0, len(data)), 1 << 17
+    for at in range(0, len(data), size):
+        block = data[at:at + size]
+        frame += struct.pack("<I", len(block) << 3 | (at + size >= len(data)))[:3] + block
+    return frame
 
 
 def put_checksum(data, start, end, at):
@@ -175,7 +212,7 @@ class Reader(unittest.TestCase):
         self.assertEqual({form[1] for form in forms}, set(read_cw2mesh.FRAME_FORMS))
         self.assertEqual({form[0] for form in forms}, {"quantised", "f32"})
         self.assertEqual({form[3] for form in forms}, {"none", "rgba8"})
-        self.assertEqual(models, {(form, model) for form in ("quat48", "quat32") for model in range(3)})
+        self.assertEqual(models, {(form, model) for form in ("quat48", "quat32") for model in range(6)})
 
     def test_textures(self):
         formats = set()
@@ -234,6 +271,32 @@ class Reader(unittest.TestCase):
             except read_cw2mesh.FormatError:
                 ends.add("refused")
         self.assertEqual(ends, {"read", "refused"})
+
+    def test_vertex_streams_of_any_bytes(self):
+        """Triangles of all sizes, of every frame model."""
+        random.seed(6)
+        header, record = read_cw2mesh.HEADER.struct.size, read_cw2mesh.SECTION
+        for frame, model in itertools.product(("quat48", "quat32"), range(6)):
+            path = self.bake("--textures", "none", "--compress", "--tangent-frame", frame)
+            scene, data = read_cw2mesh.read(path), path.read_bytes()
+            vertices, indices = (record.read(data, header + 24 * i) for i in (10, 11))
+            frames = []
+            for mesh in scene.meshes:
+                planes = 17 + 4 * (mesh.forms[3] == "rgba8")
+                stream = bytes([model, random.randrange(16)]) + random.randbytes(planes * mesh.vertex_count)
+                frames.append(raw_zstd_frame(stream))
+            section = b"".join(struct.pack("<I", len(frame)) for frame in frames) + b"".join(frames)
+            whole = bytearray(data[:vertices.offset] + section + bytes(-len(section) % 64) +
+                              data[indices.offset:])
+            moved = vertices.offset + len(section) + -len(section) % 64
+            for i, (offset, size) in {10: (vertices.offset, len(section)), 11: (moved, indices.size)}.items():
+                struct.pack_into("<2Q", whole, header + 24 * i, offset, size)
+                put_checksum(whole, offset, offset + size, header + 24 * i + 16)
+            struct.pack_into("<2Q", whole, 16, len(whole), 0)
+            put_checksum(whole, 0, header + 24 * len(read_cw2mesh.SECTIONS), 24)
+            path.write_bytes(whole)
+            with self.subTest(frame=frame, model=model):
+                self.compare_file(path)
 
     def test_damage_is_found(self):
         data = self.bake().read_bytes()

@@ -11,6 +11,7 @@
 #include "mesh-format/vertex_prediction.h"
 #include "mesh-format/vertex_stream.h"
 #include "random_triangles.h"
+#include "surface_truth.h"
 
 namespace {
 
@@ -18,6 +19,7 @@ using namespace mesh_format;
 using Bytes = std::vector<std::byte>;
 using Indices = std::vector<std::uint16_t>;
 
+constexpr auto kModelCount = static_cast<int>(FrameModel::count);
 constexpr std::uint16_t kSide = 20;  // vertices along each side of a sheet
 
 /// The triangles of a sheet of vertices, in the order of the vertices.
@@ -70,6 +72,18 @@ std::vector<Neighbours> neighbours_of(const MeshRecord& mesh, const Indices& ind
     return neighbours;
 }
 
+std::vector<Row> rows_of(const MeshRecord& mesh, const Bytes& vertices) {
+    const VertexLayout layout = vertex_layout(mesh.forms);
+    std::vector<Row> rows;
+    for (std::size_t v = 0; v < mesh.vertex_count; ++v) {
+        std::uint16_t numbers[kRowNumbers]{};
+        std::memcpy(numbers, &vertices[v * layout.stride], 6);
+        std::memcpy(&numbers[kFirstUv], &vertices[v * layout.stride + layout.uv_offset], 4);
+        std::memcpy(&rows.emplace_back(), numbers, sizeof numbers);
+    }
+    return rows;
+}
+
 Bytes encoded(const MeshRecord& mesh, const Indices& indices, const Bytes& vertices) {
     return encode_vertices(mesh, indices, neighbours_of(mesh, indices), vertices.data());
 }
@@ -111,13 +125,14 @@ TEST(VertexStream, IsTheSameOnEveryProcessor) {
         const MeshRecord mesh{.forms = {.frame = form}, .vertex_count = 400};
         Bytes stream(vertex_stream_bytes(mesh));
         std::mt19937 random(13);
-        for (const int model : {0, 1, 2}) {
+        for (int model = 0; model < kModelCount; ++model) {
             for (std::byte& byte : stream) byte = std::byte(random() & 0xFF);
             stream[0] = std::byte(model);
+            stream[1] = std::byte{3};
             sum = sum * 31 + checksum(decoded(mesh, sheet(), stream));
         }
     }
-    EXPECT_EQ(sum, 17454938545830013023u);
+    EXPECT_EQ(sum, 749279741258991316u);
 }
 
 /// On a sheet of parallelograms all but its border is foreseen.
@@ -141,54 +156,100 @@ TEST(VertexStream, AnyBytesBecomeVerticesOrAreRefused) {
     std::mt19937 random(7);
     for (const VertexForms& forms : all_forms()) {
         const MeshRecord mesh{.forms = forms, .vertex_count = 400};
-        for (int i = 0; i < 20; ++i) {
+        for (int i = 0; i < 5 * (kModelCount + 1); ++i) {
             Bytes stream(vertex_stream_bytes(mesh));
             for (std::byte& byte : stream) byte = std::byte(random() & 0xFF);
             Bytes vertices(std::size_t{mesh.vertex_count} * vertex_layout(forms).stride);
-            stream[0] = std::byte(i % 4);
+            const int model = i % (kModelCount + 1);
+            stream[0] = std::byte(model);
+            stream[1] = std::byte(i % (kMaxAreaShift + 2));
             const bool in_digits = forms.frame <= FrameForm::quat32;
-            const bool quantised = forms.position == PositionForm::quantised;
-            const bool sound[] = {true, in_digits, in_digits && quantised, false};
+            const bool quantised =
+                forms.position == PositionForm::quantised && forms.uv == UvForm::quantised;
+            const bool sound = model == 0   ? true
+                               : model == 1 ? in_digits
+                                            : in_digits && quantised && model < kModelCount;
             Scratch scratch;
             EXPECT_EQ(decode_vertices(mesh, sheet(), neighbours_of(mesh, sheet()), stream.data(),
                                       vertices.data(), scratch),
-                      sound[i % 4]);
+                      sound && i % (kMaxAreaShift + 2) <= kMaxAreaShift);
         }
     }
 }
 
-/// A bumpy sheet with normals or without UVs: what the models are for.
-TEST(VertexStream, FramesAreForeseen) {
-    const Indices indices = sheet();
+/// Corners where a decoded triangle starts may be others than those that were encoded.
+TEST(VertexStream, ItIsTheSameWhereverTrianglesStart) {
     for (const FrameForm form : {FrameForm::quat48, FrameForm::quat32}) {
-        const MeshRecord mesh{.forms = {.frame = form}, .vertex_count = kSide * kSide};
-        const VertexLayout layout = vertex_layout(mesh.forms);
-        Bytes vertices(std::size_t{mesh.vertex_count} * layout.stride);
-        std::mt19937 random(11);
-        for (std::uint16_t v = 0; v < mesh.vertex_count; ++v) {
-            const std::uint16_t position[] = {std::uint16_t(1000 * (v % kSide)),
-                                              std::uint16_t(1000 * (v / kSide)),
-                                              std::uint16_t(random() % 2000)};
-            std::memcpy(&vertices[v * std::size_t{layout.stride}], position, sizeof position);
+        const MeshRecord mesh{.forms = {.frame = form}, .vertex_count = 400};
+        Bytes stream(vertex_stream_bytes(mesh));
+        std::mt19937 random(17);
+        for (int model = 0; model < kModelCount; ++model) {
+            for (std::byte& byte : stream) byte = std::byte(random() & 0xFF);
+            stream[0] = std::byte(model);
+            stream[1] = std::byte{3};
+            const Indices indices = sheet();
+            Indices turned = indices;
+            for (std::size_t i = 0; i < turned.size(); i += 3) {
+                const auto at = turned.begin() + static_cast<std::ptrdiff_t>(i);
+                std::rotate(at, at + i / 3 % 3, at + 3);
+            }
+            const std::vector<Neighbours> neighbours = neighbours_of(mesh, indices);
+            const auto vertices_of = [&](const Indices& of) {
+                Bytes vertices(std::size_t{mesh.vertex_count} * vertex_layout(mesh.forms).stride);
+                Scratch scratch;
+                EXPECT_TRUE(
+                    decode_vertices(mesh, of, neighbours, stream.data(), vertices.data(), scratch));
+                return vertices;
+            };
+            EXPECT_EQ(vertices_of(turned), vertices_of(indices)) << model;
         }
-        std::vector<Normal> normals(mesh.vertex_count);
-        sum_normals(indices, vertices.data(), layout.stride, normals);
-        for (std::uint16_t v = 0; v < mesh.vertex_count; ++v) {
-            const TangentFrame frame{
-                {1.0f, 0.0f, 0.0f},
-                {static_cast<float>(normals[v][0]), static_cast<float>(normals[v][1]),
-                 static_cast<float>(normals[v][2])},
-                -1.0f};
-            pack_frame(form, frame,
-                       &vertices[v * std::size_t{layout.stride} + layout.frame_offset]);
-        }
-        const Bytes stream = encoded(mesh, indices, vertices);
-        EXPECT_EQ(stream[0], std::byte(FrameModel::x_tangent_of_positions));
-        // The digits differ by one or two from what is expected.
-        const auto digits = std::span(stream).last(std::size_t{6} * mesh.vertex_count);
-        EXPECT_LE(std::ranges::max(digits), std::byte{8});
-        EXPECT_EQ(decoded(mesh, indices, stream), vertices);
     }
+}
+
+/// A rough sheet whose frames are what its triangles, and UVs if it has any, suggest.
+void expect_foreseen(FrameForm form, FrameModel model) {
+    const Indices indices = sheet();
+    const MeshRecord mesh{.forms = {.frame = form}, .vertex_count = kSide * kSide};
+    const VertexLayout layout = vertex_layout(mesh.forms);
+    Bytes vertices(std::size_t{mesh.vertex_count} * layout.stride);
+    std::mt19937 random(11);
+    for (std::uint16_t v = 0; v < mesh.vertex_count; ++v) {
+        std::byte* const vertex = &vertices[v * std::size_t{layout.stride}];
+        const std::uint16_t position[] = {std::uint16_t(1000 * (v % kSide) + random() % 300),
+                                          std::uint16_t(1000 * (v / kSide) + random() % 300),
+                                          std::uint16_t(random() % 2000)};
+        std::memcpy(vertex, position, sizeof position);
+        if (has_partner(model)) continue;
+        const std::uint16_t uv[] = {std::uint16_t(700 * (v % kSide) + random() % 200),
+                                    std::uint16_t(30'000 - 900 * (v / kSide) + random() % 200)};
+        std::memcpy(vertex + layout.uv_offset, uv, sizeof uv);
+    }
+    const std::vector<SurfaceTruth> truth = surface_truth(
+        indices, rows_of(mesh, vertices),
+        model == FrameModel::surface_by_angle || model == FrameModel::x_tangent_by_angle);
+    for (std::uint16_t v = 0; v < mesh.vertex_count; ++v) {
+        TangentFrame frame{{1.0f, 0.0f, 0.0f}, {}, truth[v].is_mirrored ? -1.0f : 1.0f};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            frame.normal[axis] = static_cast<float>(truth[v].normal[axis]);
+            if (!has_partner(model))
+                frame.tangent[axis] = static_cast<float>(truth[v].tangent[axis]);
+        }
+        pack_frame(form, frame, &vertices[v * std::size_t{layout.stride} + layout.frame_offset]);
+    }
+    const Bytes stream = encoded(mesh, indices, vertices);
+    EXPECT_EQ(stream[0], std::byte(model));
+    // High bytes of the digits: nearly all within 127 of 16,383 in 45 degrees.
+    const auto high = std::span(stream).last(std::size_t{3} * mesh.vertex_count);
+    EXPECT_LE(std::ranges::count_if(high, [](std::byte byte) { return byte != std::byte{0}; }), 20);
+    EXPECT_EQ(decoded(mesh, indices, stream), vertices);
+}
+
+TEST(VertexStream, FramesAreForeseen) {
+    for (const FrameForm form : {FrameForm::quat48, FrameForm::quat32})
+        for (const FrameModel model :
+             {FrameModel::surface_by_area, FrameModel::surface_by_angle,
+              FrameModel::x_tangent_by_area, FrameModel::x_tangent_by_angle})
+            expect_foreseen(form, model);
 }
 
 }  // namespace
