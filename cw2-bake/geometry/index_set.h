@@ -24,6 +24,22 @@ std::uint64_t hash_of(Words... words) {
     return hash;
 }
 
+/// Counts numbers, at most some ten thousand, that differ; some few of one hash count as one.
+class DistinctCount {
+ public:
+    void add(std::uint32_t number) {
+        const std::uint32_t hash = number * 0x9E37'79B9u >> (32 - kBits);
+        count_ += !met_[hash];
+        met_[hash] = true;
+    }
+    std::size_t count() const { return count_; }
+
+ private:
+    static constexpr int kBits = 17;
+    std::vector<bool> met_ = std::vector<bool>(std::size_t{1} << kBits);
+    std::size_t count_ = 0;
+};
+
 /// A set of values that someone else keeps in an array: holds their indices and hashes.
 class IndexSet {
  public:

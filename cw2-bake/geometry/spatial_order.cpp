@@ -133,7 +133,6 @@ class PartSort {
 bool jumps_about(const SourceScene& scene, const FirstEqual& positions) {
     constexpr std::size_t kWindowCorners = 3 << 12;
     constexpr std::size_t kMostWindows = 16;
-    constexpr std::size_t kBits = 17;
     const std::size_t corners = scene.corners.size();
     const std::size_t windows = std::min(corners / (16 * kWindowCorners), kMostWindows);
     constexpr std::size_t kLeastBlockTriangles = 1 << 10;
@@ -141,13 +140,11 @@ bool jumps_about(const SourceScene& scene, const FirstEqual& positions) {
         return false;
     std::size_t again = 0;
     for (std::size_t window = 0; window < windows; ++window) {
-        std::vector<bool> met(std::size_t{1} << kBits);  // by hash
         const Corner* const first = &scene.corners[(corners - kWindowCorners) / windows * window];
-        for (const Corner& corner : std::span(first, kWindowCorners)) {
-            const std::uint32_t hash = positions[corner.position] * 0x9E37'79B9u >> (32 - kBits);
-            again += met[hash];
-            met[hash] = true;
-        }
+        DistinctCount met;
+        for (const Corner& corner : std::span(first, kWindowCorners))
+            met.add(positions[corner.position]);
+        again += kWindowCorners - met.count();
     }
     const double shared =
         1.0 - static_cast<double>(positions.count()) / static_cast<double>(corners);

@@ -255,12 +255,29 @@ std::vector<TriangleBlock> blocks_of(const RunVector& materials) {
     return blocks;
 }
 
-/// Copies what vertices refer to by `index` such that vertex v refers to element by_vertex(v). What
-/// few values many vertices share stays as it is.
+/// Whether consecutive vertices refer to what lies all over the memory, told by samples.
+bool are_scattered(std::span<const FramedVertex> vertices, std::uint32_t Corner::*index) {
+    constexpr std::size_t kWindows = 4;
+    constexpr std::uint32_t kNear = 8;
+    const std::size_t size = std::min<std::size_t>(vertices.size(), 1024);
+    std::size_t places = 0;
+    for (std::size_t window = 0; window < kWindows; ++window) {
+        DistinctCount met;
+        for (const FramedVertex& vertex :
+             vertices.subspan((vertices.size() - size) / kWindows * window, size))
+            met.add(vertex.corner.*index / kNear);
+        places += met.count();
+    }
+    return 2 * places > kWindows * size;
+}
+
+/// Puts what vertices refer to by `index`, if it is scattered, into their order: vertex v refers to
+/// element by_vertex(v) then. What few values many vertices share stays as it is.
 template <typename Value, typename ByVertex>
 void put_in_order(RawVector<FramedVertex>& vertices, std::vector<Value>& values,
                   std::uint32_t Corner::*index, const ByVertex& by_vertex) {
-    if (vertices.size() > values.size() + values.size() / 4) return;
+    const bool are_few = vertices.size() > values.size() + values.size() / 4;
+    if (are_few || !are_scattered(vertices, index)) return;
     std::vector<Value> ordered(vertices.size());
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, vertices.size(), 1 << 13), [&](const auto& range) {
@@ -272,11 +289,22 @@ void put_in_order(RawVector<FramedVertex>& vertices, std::vector<Value>& values,
     values = std::move(ordered);
 }
 
+void put_attributes_in_order(SourceScene& scene, RawVector<FramedVertex>& vertices) {
+    const auto itself = [](std::uint32_t v) { return v; };
+    const auto first_there = [&](std::uint32_t v) { return VertexMaker::first_there(vertices, v); };
+    tbb::parallel_invoke(
+        [&] { put_in_order(vertices, scene.positions, &Corner::position, first_there); },
+        [&] { put_in_order(vertices, scene.normals, &Corner::normal, itself); },
+        [&] { put_in_order(vertices, scene.uvs, &Corner::uv, itself); });
+}
+
 }  // namespace
 
 FramedTriangles weld(SourceScene& scene, const FirstEqual& positions, const Advance& advance) {
     const std::vector<TriangleBlock> blocks = blocks_of(scene.triangle_material);
-    return Welder(scene, positions, blocks, 1, false, advance).weld();
+    FramedTriangles result = Welder(scene, positions, blocks, 1, false, advance).weld();
+    put_attributes_in_order(scene, result.vertices);
+    return result;
 }
 
 FramedTriangles weld_in_space(SourceScene& scene, const FirstEqual& positions,
@@ -287,14 +315,8 @@ FramedTriangles weld_in_space(SourceScene& scene, const FirstEqual& positions,
     scene.triangle_material = {};
     for (const TriangleBlock& block : order.blocks)
         scene.triangle_material.extend(scene.triangle_material.size() + block.size, block.material);
-    RawVector<FramedVertex>& vertices = result.vertices;
-    const auto itself = [](std::uint32_t v) { return v; };
-    const auto first_there = [&](std::uint32_t v) { return VertexMaker::first_there(vertices, v); };
-    tbb::parallel_invoke(
-        [&] { result.sources = order.sources(); },
-        [&] { put_in_order(vertices, scene.positions, &Corner::position, first_there); },
-        [&] { put_in_order(vertices, scene.normals, &Corner::normal, itself); },
-        [&] { put_in_order(vertices, scene.uvs, &Corner::uv, itself); });
+    tbb::parallel_invoke([&] { result.sources = order.sources(); },
+                         [&] { put_attributes_in_order(scene, result.vertices); });
     return result;
 }
 

@@ -31,16 +31,15 @@ struct FramedTriangles {
     }
 };
 
-/// Corners share a vertex where they are equal in position, normal, UV and material. Of equal
-/// positions a vertex has the first one; a missing UV is 0. Every corner has a normal; `positions`
-/// tells which of the scene's are equal. The scene's corners go: what is made of them takes the
-/// place of their memory, bit by bit.
+/// Corners share a vertex where they are equal in position, normal, UV and material. Equal
+/// positions have one index; a missing UV is 0. Every corner has a normal; `positions` tells which
+/// of the scene's are equal. The scene's corners go: what is made of them takes the place of their
+/// memory, bit by bit. Attributes that lie in no order are put into that of the vertices.
 FramedTriangles weld(SourceScene& scene, const FirstEqual& positions,
                      const Advance& advance = kUnwatched);
 
-/// The same vertices for triangles in an order of space, see SpatialOrder, and so are the vertices
-/// and, of most scenes, their attributes. The scene's materials of triangles are in that order,
-/// too, not what it has one a corner.
+/// The same for triangles in an order of space, see SpatialOrder. The scene's materials of
+/// triangles are in that order then, too, not what it has one a corner.
 FramedTriangles weld_in_space(SourceScene& scene, const FirstEqual& positions,
                               const Advance& advance = kUnwatched);
 

@@ -69,7 +69,7 @@ bool same_bits(const std::vector<Values>& a, const std::vector<Values>& b) {
 }
 
 struct Tangle {
-    int triangles, points;
+    int triangles, points, materials;
     int alone;           ///< a corner in so many has a normal and a UV of its own
     bool crowded_point;  ///< so has every corner at one point
 };
@@ -91,9 +91,9 @@ SourceScene tangled_scene(std::mt19937& random, const Tangle& tangle) {
     constexpr int kNormals = 60;
     for (int i = 0; i < kNormals; ++i)
         scene.normals.push_back(glm::normalize(glm::vec3(real(), real(), 1.5f)));
-    scene.materials.resize(3);
+    scene.materials.resize(static_cast<std::size_t>(tangle.materials));
     for (int i = 0; i < tangle.triangles; ++i) {
-        scene.triangle_material.push_back(pick(8) == 0 ? 1 + pick(2) : 0);
+        scene.triangle_material.push_back(pick(8) == 0 ? pick(tangle.materials) : 0);
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t point = pick(tangle.points);
             const bool is_alone = pick(tangle.alone) == 0;
@@ -105,6 +105,15 @@ SourceScene tangled_scene(std::mt19937& random, const Tangle& tangle) {
     return scene;
 }
 
+/// So that they are put in order, too.
+void scatter_positions(SourceScene& scene) {
+    constexpr std::uint32_t kApart = 20;
+    std::vector<glm::vec3> apart(kApart * scene.positions.size());
+    for (std::size_t i = 0; i < scene.positions.size(); ++i) apart[kApart * i] = scene.positions[i];
+    scene.positions = apart;
+    for (bake::Corner& corner : scene.corners) corner.position *= kApart;
+}
+
 TEST(SpatialOrder, ChangesNothingAtAnyCorner) {
     std::mt19937 random(1);
     int vertices = 0;
@@ -112,10 +121,9 @@ TEST(SpatialOrder, ChangesNothingAtAnyCorner) {
         // Few points: many faces at each.
         SourceScene scene = tangled_scene(random, {.triangles = 1 + 3 * i,
                                                    .points = 4 + i / 4,
+                                                   .materials = 1 + i % 3,
                                                    .alone = i % 2 == 0 ? 8 : 1000,
                                                    .crowded_point = i % 4 == 3});
-        // With few vertices for each position their positions are put in order, too.
-        if (i % 2 == 1) scene.positions.resize(20 * scene.positions.size());
         if (i % 3 == 1) {
             for (std::size_t c = 0; c < scene.corners.size(); ++c)
                 scene.colors.push_back(static_cast<std::uint32_t>(random() % 3));
@@ -128,6 +136,7 @@ TEST(SpatialOrder, ChangesNothingAtAnyCorner) {
             }
         }
         const Made plain(scene, false);
+        if (i % 2 == 1) scatter_positions(scene);
         const Made sorted(scene, true);
         ASSERT_TRUE(same_bits(plain.by_source_corner(), sorted.by_source_corner())) << i;
         ASSERT_EQ(plain.framed.vertices.size(), sorted.framed.vertices.size()) << i;
@@ -244,6 +253,30 @@ TEST(SpatialOrder, BringsNeighboursTogether) {
         sorted.corners[c] = scene.corners[framed.source_of(c)];
     EXPECT_GT(positions_of_a_thousand(scene), 2500u);
     EXPECT_LT(positions_of_a_thousand(sorted), 2000u);
+}
+
+TEST(SpatialOrder, IsThatOfScatteredAttributesOfVertices) {
+    const SourceScene ordered = sheet(100, 100);
+    SourceScene scattered = ordered;
+    const auto count = static_cast<std::uint32_t>(ordered.positions.size());
+    const auto place = [&](std::uint32_t i) { return i * 7919 % count; };
+    for (std::uint32_t i = 0; i < count; ++i) {
+        scattered.positions[place(i)] = ordered.positions[i];
+        scattered.normals[place(i)] = ordered.normals[i];
+        scattered.uvs[place(i)] = ordered.uvs[i];
+    }
+    for (bake::Corner& corner : scattered.corners)
+        corner = {place(corner.position), place(corner.normal), place(corner.uv)};
+    const Made plain(ordered, false);
+    const Made sorted(scattered, false);
+    EXPECT_TRUE(same_bits(plain.by_source_corner(), sorted.by_source_corner()));
+    EXPECT_EQ(plain.scene.normals, ordered.normals);
+    for (std::uint32_t v = 0; v < sorted.framed.vertices.size(); ++v) {
+        const bake::Corner& corner = sorted.framed.vertices[v].corner;
+        ASSERT_EQ(corner.normal, v);
+        ASSERT_EQ(corner.uv, v);
+        ASSERT_EQ(sorted.scene.positions[corner.position], sorted.scene.positions[v]);
+    }
 }
 
 TEST(SpatialOrder, IsTheSameForAnyNumberOfThreads) {

@@ -74,10 +74,14 @@ TEST(Weld, MakesOneVertexOfCornersThatAreEqualInValueAndMaterial) {
         EXPECT_TRUE(welded.scene.corners.empty());
         ASSERT_EQ(welded.triangles.indices.size(), scene.corners.size());
         std::map<std::pair<Values, std::uint32_t>, std::uint32_t> vertices;
+        std::map<std::array<float, 3>, std::uint32_t> positions;
         for (std::size_t c = 0; c < scene.corners.size(); ++c) {
             const Values value = corner_of(scene, scene.corners[c]);
             ASSERT_NE(welded.corner(c).uv, kAbsent);
             ASSERT_EQ(corner_of(welded.scene, welded.corner(c)), value) << i;
+            const std::uint32_t position = welded.corner(c).position;
+            ASSERT_EQ(positions.try_emplace({value[0], value[1], value[2]}, position).first->second,
+                      position);
             const std::pair key{value, scene.triangle_material[c / 3]};
             const std::uint32_t vertex = welded.triangles.indices[c];
             ASSERT_EQ(vertices.try_emplace(key, vertex).first->second, vertex) << i;
@@ -86,22 +90,19 @@ TEST(Weld, MakesOneVertexOfCornersThatAreEqualInValueAndMaterial) {
     }
 }
 
-TEST(Weld, TakesTheFirstPositionOfEachValueWhateverTheNumberOfThreads) {
+TEST(FirstEqual, IsTheFirstOfEachValueWhateverTheNumberOfThreads) {
     std::mt19937 random(2);
-    // Enough positions for several tasks.
-    const SourceScene scene = random_scene(random, 30'000, 270'000, 90);
+    // Enough for several tasks.
+    const std::vector<glm::vec3> values = random_scene(random, 1, 270'000, 90).positions;
     std::map<std::array<float, 3>, std::uint32_t> first;
-    for (std::uint32_t i = 0; i < scene.positions.size(); ++i) {
-        const glm::vec3& p = scene.positions[i];
-        first.try_emplace({p.x, p.y, p.z}, i);
-    }
+    for (std::uint32_t i = 0; i < values.size(); ++i)
+        first.try_emplace({values[i].x, values[i].y, values[i].z}, i);
     for (const std::size_t threads : {1, 2, 3, 5}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        const Welded welded(scene);
-        for (std::size_t i = 0; i < scene.corners.size(); ++i) {
-            const glm::vec3& p = scene.positions[scene.corners[i].position];
-            ASSERT_EQ(welded.corner(i).position, first.at({p.x, p.y, p.z})) << threads;
-        }
+        const bake::FirstEqual equal(values);
+        EXPECT_EQ(equal.count(), first.size());
+        for (std::uint32_t i = 0; i < values.size(); ++i)
+            ASSERT_EQ(equal[i], first.at({values[i].x, values[i].y, values[i].z})) << threads;
     }
 }
 
