@@ -20,7 +20,7 @@ constexpr std::uint32_t kFramePlanes = 7;  // of quat48 and quat32
 /// How much more a bit of a model's streams counts: they take twice the time to decode where frames
 /// come from surfaces, or once and a half where those have no UVs.
 constexpr double cost_of(FrameModel model) {
-    return !has_surface(model) ? 1 : has_partner(model) ? 16.0 / 15 : 8.0 / 7;
+    return !has_surface(model) ? 1 : has_partner(model) ? 11.0 / 10 : 6.0 / 5;
 }
 
 bool in_digits(FrameForm form) {
