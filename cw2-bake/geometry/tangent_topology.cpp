@@ -1,5 +1,6 @@
 #include "cw2-bake/geometry/tangent_topology.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
@@ -10,9 +11,40 @@
 #include "common/every_cpu.h"
 
 namespace bake {
+namespace {
 
-/// Each task lists the corners of its own range of vertices, and reads all corners to find them:
-/// so the lists are ascending, and no task waits for another's counts but at the one barrier.
+constexpr std::size_t kBlockCorners = 1 << 11;
+
+struct VertexRange {
+    std::uint32_t low, high;
+};
+
+CW2_EVERY_CPU VertexRange range_of(const std::uint32_t* vertices, std::size_t count) {
+    VertexRange range{vertices[0], vertices[0]};
+    for (std::size_t i = 1; i < count; ++i) {
+        range.low = vertices[i] < range.low ? vertices[i] : range.low;
+        range.high = vertices[i] > range.high ? vertices[i] : range.high;
+    }
+    return range;
+}
+
+/// Of each block of corners the range of its vertices.
+std::vector<VertexRange> ranges_of_blocks(std::span<const std::uint32_t> indices) {
+    std::vector<VertexRange> ranges((indices.size() + kBlockCorners - 1) / kBlockCorners);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ranges.size(), 8), [&](const auto& some) {
+        for (std::size_t i = some.begin(); i < some.end(); ++i) {
+            const auto block = indices.subspan(i * kBlockCorners);
+            ranges[i] = range_of(block.data(), std::min(block.size(), kBlockCorners));
+        }
+    });
+    return ranges;
+}
+
+}  // namespace
+
+/// Each task lists the corners of its own range of vertices, and reads all blocks of corners where
+/// one may be: so the lists are ascending, and no task waits for another's counts but at the one
+/// barrier.
 CornerLists list_corners(const FramedTriangles& triangles) {
     const auto vertex_count = static_cast<std::uint32_t>(triangles.vertices.size());
     const std::size_t tasks =
@@ -20,13 +52,19 @@ CornerLists list_corners(const FramedTriangles& triangles) {
     const auto first_vertex = [&](std::size_t task) {
         return static_cast<std::uint32_t>(std::uint64_t{vertex_count} * task / tasks);
     };
+    const std::vector<VertexRange> ranges = ranges_of_blocks(triangles.indices);
     const auto for_own_corners = [&](std::size_t task, auto&& visit) {
         const std::uint32_t begin = first_vertex(task);
         const std::uint32_t size = first_vertex(task + 1) - begin;
-        const auto count = static_cast<std::uint32_t>(triangles.indices.size());
-        for (std::uint32_t c = 0; c < count; ++c) {
-            const std::uint32_t vertex = triangles.indices[c];
-            if (vertex - begin < size) visit(vertex, c);
+        for (std::size_t block = 0; block < ranges.size(); ++block) {
+            if (ranges[block].high < begin || ranges[block].low >= begin + size) continue;
+            const auto first = static_cast<std::uint32_t>(block * kBlockCorners);
+            const auto end = static_cast<std::uint32_t>(
+                std::min<std::size_t>(first + kBlockCorners, triangles.indices.size()));
+            for (std::uint32_t c = first; c < end; ++c) {
+                const std::uint32_t vertex = triangles.indices[c];
+                if (vertex - begin < size) visit(vertex, c);
+            }
         }
     };
 
