@@ -111,6 +111,18 @@ class Lacking {
     std::uint32_t first_ = 0, span_ = 0;  // all are among these
 };
 
+/// Some corners and the range of the positions where they lie.
+struct PlacedCorners {
+    std::vector<std::uint32_t> corners;  ///< ascending
+    std::uint32_t first = ~std::uint32_t{0}, last = 0;
+
+    void add(std::uint32_t corner, std::uint32_t position) {
+        corners.push_back(corner);
+        first = std::min(first, position);
+        last = std::max(last, position);
+    }
+};
+
 /// Makes the normals at some positions; one task's.
 class SmoothNormals {
  public:
@@ -119,8 +131,7 @@ class SmoothNormals {
 
     /// Those of positions begin .. end, with all the `corners` that lie there and at others,
     /// ascending.
-    void make(std::uint32_t begin, std::uint32_t end,
-              std::span<const std::vector<std::uint32_t>> corners) {
+    void make(std::uint32_t begin, std::uint32_t end, std::span<const PlacedCorners> corners) {
         list(begin, end, corners);
         made_.clear();
         last_.clear();
@@ -144,12 +155,12 @@ class SmoothNormals {
 
  private:
     /// The corners of each position, one's behind the other's.
-    void list(std::uint32_t begin, std::uint32_t end,
-              std::span<const std::vector<std::uint32_t>> corners) {
+    void list(std::uint32_t begin, std::uint32_t end, std::span<const PlacedCorners> corners) {
         const std::uint32_t size = end - begin;
         const auto for_own_corners = [&](auto&& visit) {
-            for (const auto& part : corners) {
-                for (const std::uint32_t corner : part) {
+            for (const PlacedCorners& part : corners) {
+                if (part.last < begin || part.first >= end) continue;
+                for (const std::uint32_t corner : part.corners) {
                     const std::uint32_t place = positions_[scene_.corners[corner].position] - begin;
                     if (place < size) visit(place, corner);
                 }
@@ -226,14 +237,14 @@ void make_smooth(const FirstEqual& positions, SourceScene& scene, const Advance&
     for (std::size_t round = 0; round < rounds; ++round) {
         const std::uint32_t begin = first_position(round, 0);
         const std::uint32_t size = first_position(round + 1, 0) - begin;
-        std::vector<std::vector<std::uint32_t>> corners(scene.corners.size() / kCornersPerBlock +
-                                                        1);
+        std::vector<PlacedCorners> corners(scene.corners.size() / kCornersPerBlock + 1);
         tbb::parallel_for(std::size_t{0}, corners.size(), [&](std::size_t block) {
             const std::size_t first = block * kCornersPerBlock;
             const std::size_t end = std::min(first + kCornersPerBlock, scene.corners.size());
             lacking.for_each_there(scene.corners, first, end, [&](std::size_t i) {
-                if (positions[scene.corners[i].position] - begin < size)
-                    corners[block].push_back(static_cast<std::uint32_t>(i));
+                const std::uint32_t position = positions[scene.corners[i].position];
+                if (position - begin < size)
+                    corners[block].add(static_cast<std::uint32_t>(i), position);
             });
         });
         tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
