@@ -229,13 +229,13 @@ struct VectorsAndNumbers {
 
 /// The other way.
 CW2_INLINE VectorsAndNumbers by_number(const std::array<Four, kLanes>& in) {
-    const auto pair = [&](std::size_t k) {
-        return __builtin_shufflevector(in[k], in[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
-    };
-    const Lanes xy0 = __builtin_shufflevector(pair(0), pair(1), 0, 8, 1, 9, 4, 12, 5, 13);
-    const Lanes zw0 = __builtin_shufflevector(pair(0), pair(1), 2, 10, 3, 11, 6, 14, 7, 15);
-    const Lanes xy2 = __builtin_shufflevector(pair(2), pair(3), 0, 8, 1, 9, 4, 12, 5, 13);
-    const Lanes zw2 = __builtin_shufflevector(pair(2), pair(3), 2, 10, 3, 11, 6, 14, 7, 15);
+    std::array<Lanes, 4> pairs;
+    for (std::size_t k = 0; k < 4; ++k)
+        pairs[k] = __builtin_shufflevector(in[k], in[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
+    const Lanes xy0 = __builtin_shufflevector(pairs[0], pairs[1], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Lanes zw0 = __builtin_shufflevector(pairs[0], pairs[1], 2, 10, 3, 11, 6, 14, 7, 15);
+    const Lanes xy2 = __builtin_shufflevector(pairs[2], pairs[3], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Lanes zw2 = __builtin_shufflevector(pairs[2], pairs[3], 2, 10, 3, 11, 6, 14, 7, 15);
     return {{__builtin_shufflevector(xy0, xy2, 0, 1, 8, 9, 4, 5, 12, 13),
              __builtin_shufflevector(xy0, xy2, 2, 3, 10, 11, 6, 7, 14, 15),
              __builtin_shufflevector(zw0, zw2, 0, 1, 8, 9, 4, 5, 12, 13)},
