@@ -119,13 +119,14 @@ enum TriangleEnd : std::uint32_t {
     kTriangleStart = 8,
 };
 
-/// A mesh's vertices in a compressed file are one byte, a FrameModel, and planes of one byte a
-/// vertex. The vertex's parts follow each other: position, UV, colour, frame. A part of k numbers
-/// of n bytes each has k n planes: the lowest byte of the first number, of the second, ..., then
-/// the next bytes. A number stands for how much the vertex's differs from an expected one, d modulo
-/// 256^n: as 2 d, or as -2 d - 1 if d is negative. Expected is a + b - c, the numbers of the three
-/// Neighbours in index_stream.h; 0 for vertex 0. The bits of a float count as a number once
-/// the first, or in negative floats all of them, are inverted.
+/// A mesh's vertices in a compressed file are one byte, a FrameModel, another,
+/// SurfaceModel::area_shift, and planes of one byte a vertex. The vertex's parts follow each other:
+/// position, UV, colour, frame. A part of k numbers of n bytes each has k n planes: the lowest byte
+/// of the first number, of the second, ..., then the next bytes. A number stands for how much the
+/// vertex's differs from an expected one, d modulo 256^n: as 2 d, or as -2 d - 1 if d is negative.
+/// Expected is a + b - c, the numbers of the three Neighbours in index_stream.h; 0 for vertex 0.
+/// The bits of a float count as a number once the first, or in negative floats all of them, are
+/// inverted.
 ///
 /// A frame in digits, see tangent_frame.h, has seven planes. The first holds the number of the
 /// largest component, + 4 if left-handed, xor the expected one. Then come three numbers of two
@@ -138,8 +139,8 @@ enum class FrameModel : std::uint8_t {
     /// vertex 0 the digit of ratio 0. The one for other forms.
     neighbours,
     x_tangent,  ///< the same, but others[partner()] last: FrameCode::of_x_tangent()
-    /// FrameCode::of_rotation() of sum_surfaces(), by area or by angle. This and the next two only
-    /// where positions and UVs are quantised.
+    /// FrameCode::of_rotation() of sum_surfaces(), by area or by angle. This and the next
+    /// three only where positions and UVs are quantised.
     surface_by_area,
     surface_by_angle,
     /// The same without UVs; others[partner()] last: FrameCode::of_x_tangent()

@@ -29,6 +29,8 @@ struct Surface {
     std::array<std::int32_t, 4> tangent;
 };
 
+/// Sets the surfaces of all vertices; what is behind those becomes 0. Every index is below their
+/// number. It does not matter at which corner a triangle starts.
 void sum_surfaces(std::span<const std::uint16_t> indices, const Row* vertices,
                   const SurfaceModel& model, std::span<Surface> surfaces);
 
