@@ -281,23 +281,6 @@ CW2_INLINE void sum_all(std::span<const std::uint16_t> indices, const Row* verti
     scatter<kByAngle, kHasUvs>(parts, rest.data(), (indices.size() - i) / 3, surfaces);
 }
 
-CW2_EVERY_CPU void sum_by_area(std::span<const std::uint16_t> indices, const Row* vertices,
-                               int area_shift, Surface* surfaces) {
-    sum_all<false, false>(indices, vertices, area_shift, surfaces);
-}
-CW2_EVERY_CPU void sum_by_angle(std::span<const std::uint16_t> indices, const Row* vertices,
-                                int area_shift, Surface* surfaces) {
-    sum_all<true, false>(indices, vertices, area_shift, surfaces);
-}
-CW2_EVERY_CPU void sum_by_area_and_uv(std::span<const std::uint16_t> indices, const Row* vertices,
-                                      int area_shift, Surface* surfaces) {
-    sum_all<false, true>(indices, vertices, area_shift, surfaces);
-}
-CW2_EVERY_CPU void sum_by_angle_and_uv(std::span<const std::uint16_t> indices, const Row* vertices,
-                                       int area_shift, Surface* surfaces) {
-    sum_all<true, true>(indices, vertices, area_shift, surfaces);
-}
-
 CW2_INLINE void put(const Lanes& lanes, Numbers& out) {
     std::memcpy(&out, &lanes, sizeof lanes);
 }
@@ -315,13 +298,18 @@ CW2_INLINE Lanes inverse(const Lanes& number) {
 
 }  // namespace
 
-void sum_surfaces(std::span<const std::uint16_t> indices, const Row* vertices,
-                  const SurfaceModel& model, std::span<Surface> surfaces) {
+CW2_EVERY_CPU void sum_surfaces(std::span<const std::uint16_t> indices, const Row* vertices,
+                                const SurfaceModel& model, std::span<Surface> surfaces) {
     std::ranges::fill(surfaces, Surface{});
-    const auto sum = model.has_uvs    ? model.by_angle ? sum_by_angle_and_uv : sum_by_area_and_uv
-                     : model.by_angle ? sum_by_angle
-                                      : sum_by_area;
-    sum(indices, vertices, model.area_shift, surfaces.data());
+    const auto [by_angle, has_uvs, shift] = model;
+    if (by_angle && has_uvs)
+        sum_all<true, true>(indices, vertices, shift, surfaces.data());
+    else if (by_angle)
+        sum_all<true, false>(indices, vertices, shift, surfaces.data());
+    else if (has_uvs)
+        sum_all<false, true>(indices, vertices, shift, surfaces.data());
+    else
+        sum_all<false, false>(indices, vertices, shift, surfaces.data());
 }
 
 int fitting_area_shift(std::span<const std::uint16_t> indices, const Row* vertices) {

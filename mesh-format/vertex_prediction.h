@@ -71,6 +71,25 @@ struct FrameCode {
                             Digits& others);
 };
 
+/// Calls use<form, has_partner(model), has_surface(model)>(), for a form in digits.
+template <typename Use>
+void with_model(FrameForm form, FrameModel model, const Use& use) {
+    const auto with_form = [&]<FrameForm kForm>() {
+        if (has_partner(model) && has_surface(model))
+            use.template operator()<kForm, true, true>();
+        else if (has_partner(model))
+            use.template operator()<kForm, true, false>();
+        else if (has_surface(model))
+            use.template operator()<kForm, false, true>();
+        else
+            use.template operator()<kForm, false, false>();
+    };
+    if (form == FrameForm::quat48)
+        with_form.template operator()<FrameForm::quat48>();
+    else
+        with_form.template operator()<FrameForm::quat32>();
+}
+
 /// The place among the others of that component whose product with the largest is xy or zw.
 constexpr std::uint32_t partner(std::uint32_t largest) {
     return (largest ^ 1) - ((largest ^ 1) > largest);

@@ -302,24 +302,10 @@ class Rows {
 void decode_rows(const MeshRecord& mesh, FrameModel model, int area_shift,
                  std::span<const std::uint16_t> indices, std::span<const Neighbours> neighbours,
                  const std::byte* planes, std::byte* vertices, Scratch& scratch) {
-    const auto decode = [&]<FrameForm kForm, bool kHasPartner, bool kHasSurface>() {
+    with_model(mesh.forms.frame, model, [&]<FrameForm kForm, bool kHasPartner, bool kHasSurface>() {
         Rows<kForm, kHasPartner, kHasSurface>(mesh.vertex_count, neighbours, scratch)
             .decode(planes, indices, surface_of(model, area_shift), vertices);
-    };
-    const auto decode_form = [&]<FrameForm kForm>() {
-        if (has_partner(model) && has_surface(model))
-            decode.template operator()<kForm, true, true>();
-        else if (has_partner(model))
-            decode.template operator()<kForm, true, false>();
-        else if (has_surface(model))
-            decode.template operator()<kForm, false, true>();
-        else
-            decode.template operator()<kForm, false, false>();
-    };
-    if (mesh.forms.frame == FrameForm::quat48)
-        decode_form.operator()<FrameForm::quat48>();
-    else
-        decode_form.operator()<FrameForm::quat32>();
+    });
 }
 
 }  // namespace mesh_format

@@ -10,9 +10,14 @@
 
 namespace mesh_format {
 
-/// Whether vertices of these forms are rows of eight numbers of 16 bits.
+/// Whether positions and UVs of these forms are numbers of rows.
+constexpr bool has_rows(const VertexForms& forms) {
+    return forms.position == PositionForm::quantised && forms.uv == UvForm::quantised;
+}
+
+/// Whether all of a vertex of these forms is a row.
 constexpr bool are_rows(const VertexForms& forms) {
-    return forms.position == PositionForm::quantised && forms.uv == UvForm::quantised &&
+    return has_rows(forms) &&
            (forms.frame == FrameForm::quat48 || forms.frame == FrameForm::quat32) &&
            forms.color == ColorForm::none;
 }

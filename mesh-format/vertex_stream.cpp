@@ -239,7 +239,7 @@ class Frames {
     std::span<const Surface> surfaces_;
     Rotations rotations_{};  // of the vertices at hand
     std::vector<FrameDigits> frames_;
-    std::vector<std::uint8_t> tops_;  // what differs between a frame's and its neighbour's
+    std::vector<std::uint8_t> tops_;  // what differs between a frame's and the expected one
     std::array<std::vector<std::uint16_t>, 3> words_;
 };
 
@@ -291,24 +291,9 @@ void with_frames(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
         surfaces.resize(mesh.vertex_count + Rotations::kCount);
         sum_surfaces(indices, rows.data(), surface_of(model, area_shift), surfaces);
     }
-    const auto frames = [&]<FrameForm kForm>() {
-        if (has_partner(model) && has_surface(model))
-            use(Frames<kForm, true, true>(stride, neighbours, surfaces));
-        else if (has_partner(model))
-            use(Frames<kForm, true, false>(stride, neighbours, surfaces));
-        else if (has_surface(model))
-            use(Frames<kForm, false, true>(stride, neighbours, surfaces));
-        else
-            use(Frames<kForm, false, false>(stride, neighbours, surfaces));
-    };
-    if (mesh.forms.frame == FrameForm::quat48)
-        frames.template operator()<FrameForm::quat48>();
-    else
-        frames.template operator()<FrameForm::quat32>();
-}
-
-bool has_rows(const VertexForms& forms) {
-    return forms.position == PositionForm::quantised && forms.uv == UvForm::quantised;
+    with_model(mesh.forms.frame, model, [&]<FrameForm kForm, bool kHasPartner, bool kHasSurface>() {
+        use(Frames<kForm, kHasPartner, kHasSurface>(stride, neighbours, surfaces));
+    });
 }
 
 /// Whether a stream of the mesh may say so.

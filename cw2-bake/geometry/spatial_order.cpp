@@ -58,26 +58,8 @@ class Grid {
     std::uint32_t spread_[kSide]{};  // each bit of a place three bits from the one before
 };
 
-/// Some triangles of one material.
-struct Part {
-    std::uint32_t material, first, size;
-};
-
 /// Few enough that a part is sorted in a cache, and that 16 bits count them.
 constexpr std::uint32_t kMostPartTriangles = 1 << 16;
-
-std::vector<Part> parts_of(const RunVector& materials) {
-    std::vector<Part> parts;
-    std::size_t begin = 0;
-    for (const RunVector::Run& run : materials.runs()) {
-        for (; begin < run.end; begin += parts.back().size) {
-            const auto left = static_cast<std::uint32_t>(run.end - begin);
-            parts.push_back({run.number, static_cast<std::uint32_t>(begin),
-                             std::min(left, kMostPartTriangles)});
-        }
-    }
-    return parts;
-}
 
 struct CellBlock {
     TriangleBlock block;
@@ -88,7 +70,7 @@ struct CellBlock {
 class PartSort {
  public:
     /// Returns what blocks there are. `source_in_part` is as long as the part.
-    std::vector<CellBlock> sort(const Part& part, std::uint32_t number,
+    std::vector<CellBlock> sort(const TriangleBlock& part, std::uint32_t number,
                                 std::span<const std::uint16_t> cell_of_position,
                                 std::span<Corner> corners,
                                 std::span<std::uint16_t> source_in_part) {
@@ -126,6 +108,18 @@ class PartSort {
 };
 
 }  // namespace
+
+std::vector<TriangleBlock> blocks_of(const RunVector& materials, std::uint32_t most) {
+    std::vector<TriangleBlock> blocks;
+    std::uint32_t begin = 0;
+    for (const RunVector::Run& run : materials.runs()) {
+        for (; begin < run.end; begin += blocks.back().size) {
+            const std::uint32_t left = static_cast<std::uint32_t>(run.end) - begin;
+            blocks.push_back({run.number, begin, std::min(left, most), 0});
+        }
+    }
+    return blocks;
+}
 
 /// In an order most corners that share a position meet within a few thousand triangles: of as many
 /// as can 0.9 in most files, 0.8 where rows are longer than that. Where 16 triangles at a time are
@@ -165,9 +159,9 @@ RawVector<std::uint32_t> SpatialOrder::sources() const {
 }
 
 SpatialOrder sort_in_space(SourceScene& scene) {
-    const std::vector<Part> parts = parts_of(scene.triangle_material);
+    const std::vector<TriangleBlock> parts = blocks_of(scene.triangle_material, kMostPartTriangles);
     SpatialOrder order;
-    for (const Part& part : parts) order.first_of_part.push_back(part.first);
+    for (const TriangleBlock& part : parts) order.first_of_part.push_back(part.first);
     RawVector<std::uint16_t> cells(scene.positions.size());
     const Grid grid(scene);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 1 << 13),
@@ -179,11 +173,12 @@ SpatialOrder sort_in_space(SourceScene& scene) {
     std::vector<std::vector<CellBlock>> blocks_of_part(parts.size());
     tbb::enumerable_thread_specific<PartSort> sorts;
     tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
-        const auto [material, first, size] = parts[i];
-        blocks_of_part[i] = sorts.local().sort(
-            parts[i], static_cast<std::uint32_t>(i), cells,
-            std::span(scene.corners).subspan(3 * std::size_t{first}, 3 * std::size_t{size}),
-            std::span(order.source_in_part).subspan(first, size));
+        const std::size_t first = parts[i].first;
+        const std::size_t size = parts[i].size;
+        blocks_of_part[i] =
+            sorts.local().sort(parts[i], static_cast<std::uint32_t>(i), cells,
+                               std::span(scene.corners).subspan(3 * first, 3 * size),
+                               std::span(order.source_in_part).subspan(first, size));
     });
     std::vector<CellBlock> blocks;
     for (const auto& of_part : blocks_of_part)

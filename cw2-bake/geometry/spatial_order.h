@@ -18,6 +18,9 @@ struct TriangleBlock {
     std::uint32_t part;  ///< of those that the corners are cut into, see SpatialOrder
 };
 
+/// All triangles in the order of the source, in blocks of at most `most`; in one part.
+std::vector<TriangleBlock> blocks_of(const RunVector& materials, std::uint32_t most);
+
 /// Whether the triangles jump about in space, so that those around a vertex come anywhere, as some
 /// exporters, decimators and scanners leave them; then all that asks for their vertices waits for
 /// the memory. Told by samples of what is large enough for that to matter.

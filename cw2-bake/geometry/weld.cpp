@@ -240,21 +240,6 @@ class Welder {
     const Advance& advance_;
 };
 
-/// In the order of the source.
-std::vector<TriangleBlock> blocks_of(const RunVector& materials) {
-    constexpr std::uint32_t kMostTriangles = 4096;
-    std::vector<TriangleBlock> blocks;
-    std::uint32_t begin = 0;
-    for (const RunVector::Run& run : materials.runs()) {
-        for (; begin < run.end; begin += blocks.back().size) {
-            blocks.push_back({run.number, begin,
-                              std::min(static_cast<std::uint32_t>(run.end) - begin, kMostTriangles),
-                              0});
-        }
-    }
-    return blocks;
-}
-
 /// Whether consecutive vertices refer to what lies all over the memory, told by samples.
 bool are_scattered(std::span<const FramedVertex> vertices, std::uint32_t Corner::*index) {
     constexpr std::size_t kWindows = 4;
@@ -301,7 +286,9 @@ void put_attributes_in_order(SourceScene& scene, RawVector<FramedVertex>& vertic
 }  // namespace
 
 FramedTriangles weld(SourceScene& scene, const FirstEqual& positions, const Advance& advance) {
-    const std::vector<TriangleBlock> blocks = blocks_of(scene.triangle_material);
+    constexpr std::uint32_t kMostBlockTriangles = 4096;
+    const std::vector<TriangleBlock> blocks =
+        blocks_of(scene.triangle_material, kMostBlockTriangles);
     FramedTriangles result = Welder(scene, positions, blocks, 1, false, advance).weld();
     put_attributes_in_order(scene, result.vertices);
     return result;

@@ -32,25 +32,16 @@ std::vector<Surface> surfaces_of(std::span<const std::uint16_t> indices,
     return surfaces;
 }
 
-/// The frame of component quaternion k.
+/// Of rotation k.
 TangentFrame frame_of(const Rotations& rotations, std::size_t k) {
-    double q[4];
-    double squared = 0;
+    float q[4];
+    const bool is_negative = rotations.components[3][k] < 0;
     for (std::size_t c = 0; c < 4; ++c) {
-        q[c] = rotations.components[c][k];
-        squared += q[c] * q[c];
+        const auto component = static_cast<float>(rotations.components[c][k]);
+        q[c] = (is_negative ? -component : component) / 32'768.0f;
     }
-    for (double& component : q) component /= std::sqrt(squared);
-    const auto [x, y, z, w] = q;
-    TangentFrame frame{};
-    const double t[] = {1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)};
-    const double n[] = {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        frame.tangent[axis] = static_cast<float>(t[axis]);
-        frame.normal[axis] = static_cast<float>(n[axis]);
-    }
-    frame.handedness = rotations.tops[k] >= 4 ? -1.0f : 1.0f;
-    return frame;
+    if (rotations.tops[k] >= 4) q[3] = -q[3];  // left-handed
+    return unpack_frame(FrameForm::f32, reinterpret_cast<const std::byte*>(q));
 }
 
 /// Triangles of all sizes, most of them oblique: nearly all frames are within a degree of the
