@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads .cw2mesh files of format version 8, as docs/format.md describes them.
+"""Reads .cw2mesh files of format version 9, as docs/format.md describes them.
 
     import read_cw2mesh
     scene = read_cw2mesh.read("model.cw2mesh")
@@ -17,7 +17,7 @@ import math
 import struct
 import sys
 
-VERSION = 8
+VERSION = 9
 SECTIONS = ("scene", "meshes", "chunks", "materials", "textures", "sources", "strings", "vertices",
             "indices", "texels", "encoded_vertices", "encoded_indices")
 MAP_USES = ("base_color", "roughness", "metalness", "normal", "alpha_mask", "emission")
@@ -362,8 +362,6 @@ def zstd():
             library = ctypes.CDLL(name)
         except OSError:
             continue
-        library.ZSTD_getFrameContentSize.restype = ctypes.c_ulonglong
-        library.ZSTD_getFrameContentSize.argtypes = [ctypes.c_char_p, ctypes.c_size_t]
         library.ZSTD_decompress.restype = ctypes.c_size_t
         library.ZSTD_decompress.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_char_p,
                                             ctypes.c_size_t]
@@ -371,13 +369,12 @@ def zstd():
     raise OSError("compressed files need the library libzstd")
 
 
-def unwrap(frame, largest):
-    """What is in a Zstandard frame, if that is at most `largest` bytes."""
-    size = zstd().ZSTD_getFrameContentSize(frame, len(frame))
+def unwrap(frames, largest):
+    """What is in Zstandard frames, one after the other, if that is at most `largest` bytes."""
+    data = ctypes.create_string_buffer(largest)
+    size = zstd().ZSTD_decompress(data, largest, frames, len(frames))
     require(size <= largest, "compressed bytes are damaged")  # errors are the largest values
-    data = ctypes.create_string_buffer(size)
-    require(zstd().ZSTD_decompress(data, size, frame, len(frame)) == size, "compressed bytes are damaged")
-    return data.raw
+    return data.raw[:size]
 
 
 def split_parts(data, count):
@@ -501,139 +498,34 @@ def read_numbers(stream, at, count, numbers, size):
     return result
 
 
-def decode_words(stream, at, neighbours, numbers, size, out, offset, stride):
-    """A part of all vertices that is numbers of `size` bytes, 4 of them floats, into `out`."""
-    mask, columns = 256 ** size - 1, []
-    for differences in read_numbers(stream, at, len(neighbours), numbers, size):
-        values = []
-        for i, (a, b, c) in enumerate(neighbours):
-            expected = values[a] + values[b] - values[c] if i else 0
-            values.append(expected + differences[i] & mask)
-        if size == 4:
-            values = [v & 0x7FFFFFFF if v >> 31 else ~v & mask for v in values]
-        columns.append(values)
-    form = struct.Struct("<" + {1: "B", 2: "H", 4: "I"}[size] * numbers)
+def decode_words(differences, neighbours, size, expected=None):
+    """The values of a number of `size` bytes of all vertices; floats are numbers of their order."""
+    mask, values = 256 ** size - 1, []
+    for i, (a, b, c) in enumerate(neighbours):
+        if expected:
+            value = expected[i]
+        else:
+            value = values[a] + values[b] - values[c] if i else 0
+        values.append(value + differences[i] & mask)
+    return values
+
+
+def to_float_bits(value):
+    return value & 0x7FFFFFFF if value >> 31 else ~value & 0xFFFFFFFF
+
+
+def put_words(columns, size, out, offset, stride):
+    """The numbers of a part of all vertices, a list for each number, into `out`."""
+    form = struct.Struct("<" + {1: "B", 2: "H", 4: "I"}[size] * len(columns))
     for i, values in enumerate(zip(*columns)):
         form.pack_into(out, i * stride + offset, *values)
 
 
-ONE = 32768  # the unit of ratios
-ANGLES = 16383  # 45 degrees
-
-# Frame models.
-X_TANGENT_MODELS, BY_ANGLE_MODELS = (1, 4, 5), (3, 5)
-SURFACE_MODELS = 2  # the first of those
-
-
-@functools.lru_cache(None)
-def ratio_tables():
-    """The ratio of each angle, and the angle of each ratio."""
-    unit = 1 << 30
-    first, *coefficients = (int(single(c) * unit) for c in TAN_COEFFICIENTS)
-    ratio = []
-    for a in range(ANGLES + 1):
-        x = unit * a // ANGLES
-        y = x * x // unit
-        q = first
-        for c in coefficients:
-            q = q * y // unit + c
-        tangent = x * (unit - (unit - y) * q // unit) // unit
-        ratio.append((tangent + unit // ONE // 2) * ONE // unit)
-    angle, a = [], 0
-    for r in range(ONE + 1):
-        while ratio[a] < r:
-            a += 1
-        angle.append(a)
-    return ratio, angle
-
-
-def truncated(a, b):
-    """a / b, rounded to 0."""
-    return a // b if (a < 0) == (b < 0) else -(-a // b)
-
-
-class FrameDecoder:
-    """Frames of quat48 or quat32, as differences of digits to expected ones."""
-
-    def __init__(self, form, model, neighbours, rotations):
-        self.is_wide, self.neighbours, self.rotations = form == "quat48", neighbours, rotations
-        self.has_partner = model in X_TANGENT_MODELS
-        self.zero, self.levels = (16383, 32768) if self.is_wide else (405, 811)
-        self.frames = []  # largest component + 4 left-handed, and three digits
-
-    def ratio_of(self, digit):
-        level = min(digit, 2 * self.zero) - self.zero
-        angle = abs(level)
-        if not self.is_wide:
-            angle = (angle * ANGLES + self.zero // 2) // self.zero
-        return ratio_tables()[0][angle] * (-1 if level < 0 else 1)
-
-    def digit_of(self, ratio):
-        level = ratio_tables()[1][abs(ratio)]
-        if not self.is_wide:
-            level = (level * self.zero + ANGLES // 2) // ANGLES
-        return self.zero + (-level if ratio < 0 else level)
-
-    def with_largest(self, frame, largest):
-        """The digits of the same rotation if another component is taken for the largest."""
-        top, digits = frame
-        if top & 3 == largest:
-            return digits
-        q = [self.ratio_of(digit) for digit in digits]
-        q.insert(top & 3, ONE)
-        return self.of_quaternion(q, largest)
-
-    def of_quaternion(self, q, largest):
-        others = q[:largest] + q[largest + 1:]
-        divisor = q[largest] or 1
-        return [self.digit_of(min(max(truncated(c * ONE, divisor), -ONE), ONE)) for c in others]
-
-    def of_rotation(self, rotation, largest):
-        top, q = rotation
-        if top & 3 == largest:
-            return [self.digit_of(c) for k, c in enumerate(q) if k != largest]
-        return self.of_quaternion(q, largest)
-
-    def expected(self, i, largest):
-        if self.rotations:
-            return self.of_rotation(self.rotations[i], largest)
-        if i == 0:
-            return [self.zero] * 3
-        a, b, c = (self.frames[n] for n in self.neighbours[i])
-        if any(frame[0] & 3 != largest for frame in (a, b, c)):
-            return self.with_largest(a, largest)
-        sums = (x + y - z for x, y, z in zip(a[1], b[1], c[1]))
-        return [(s + 32768 & 65535) - 32768 for s in sums]
-
-    def decode(self, tops, differences):
-        for i, top in enumerate(tops):
-            if self.rotations:
-                top ^= self.rotations[i][0]
-            elif i:
-                top ^= self.frames[self.neighbours[i][0]][0]
-            largest = top & 3
-            expected = self.expected(i, largest)
-            if not self.has_partner:
-                digits = [(e + d[i]) % self.levels for e, d in zip(expected, differences)]
-            else:
-                other = largest ^ 1
-                place = other - (other > largest)
-                first, second = [k for k in range(3) if k != place]
-                digits = [0, 0, 0]
-                digits[first] = (expected[first] + differences[0][i]) % self.levels
-                digits[second] = (expected[second] + differences[1][i]) % self.levels
-                product = truncated(self.ratio_of(digits[first]) * self.ratio_of(digits[second]), ONE)
-                digits[place] = (self.digit_of(product) + differences[2][i]) % self.levels
-            self.frames.append((top, digits))
-
-    def pack(self, out, offset, stride):
-        for i, (top, (d, e, f)) in enumerate(self.frames):
-            if self.is_wide:
-                struct.pack_into("<3H", out, i * stride + offset, d | (top >> 2 & 1) << 15,
-                                 e | (top & 1) << 15, f | (top >> 1 & 1) << 15)
-            else:
-                code = ((top * 811 + f) * 811 + e) * 811 + d
-                struct.pack_into("<I", out, i * stride + offset, code & 0xFFFFFFFF)
+def code_differences(stream, at, count):
+    """What the codes of quat32 differ by."""
+    tops, = read_numbers(stream, at, count, 1, 1)
+    digits = read_numbers(stream, at + count, count, 3, 2)
+    return [((t * 811 + f) * 811 + e) * 811 + d for t, d, e, f in zip(tops, *digits)]
 
 
 # --- What triangles tell of frames ------------------------------------------------------------------
@@ -665,74 +557,49 @@ def nearly_unit(v):
     return [c * inverse_root >> bits for c in v]
 
 
-def unit(v):
-    u = nearly_unit(v)
-    factor = 49152 - (dot(u, u) >> 14)
-    return [c * factor >> 15 for c in u]
+def signed(number, bits):
+    return (number + (1 << bits - 1)) % (1 << bits) - (1 << bits - 1)
 
 
-def angle_of(cosine):
-    c = min(max(cosine, -16384), 16384)
-    square = c * c >> 14
-    series = 17207 - (square * (2785 - (square * 8582 >> 14)) >> 14)
-    return max(25736 - (c * series >> 14), 0)
-
-
-def with_range_of_14_bits(triples):
-    """The numbers of three corners, halved until they differ by less than 2^14, and how often."""
-    bits, largest = 0, max(max(t) - min(t) for t in triples)
-    while largest >> bits >= 1 << 14:
-        bits += 1
-    return [[c >> bits for c in t] for t in triples], bits
-
-
-def triangle_parts(places, model, area_shift):
-    """What a triangle adds to its corners: a normal and a tangent, and the angles that they count
-    by there; with the tangent, whether UVs are mirrored."""
-    (xs, ys, zs), bits = with_range_of_14_bits([[p[k] for p in places] for k in range(3)])
-    p, q, r = zip(xs, ys, zs)
-    edges = [[b - a for a, b in zip(*ends)] for ends in ((q, r), (r, p), (p, q))]
-    normal = cross(edges[1], edges[2])
-    if model in BY_ANGLE_MODELS:
-        normal = nearly_unit(shortened(normal))
-    else:
-        down = area_shift - 2 * bits
-        normal = [c >> down if down >= 0 else c << -down for c in normal]
-    units = [nearly_unit(edge) for edge in edges]
-    angles = [angle_of(-(dot(units[k - 2], units[k - 1]) >> 14)) for k in range(3)]
-    (u, v), _ = with_range_of_14_bits([[p[k] for p in places] for k in (3, 4)])
-    winding = (u[1] - u[0]) * (v[2] - v[0]) - (u[2] - u[0]) * (v[1] - v[0])
-    sign = (winding > 0) - (winding < 0)
-    along_u = [((v[2] - v[0]) * a + (v[1] - v[0]) * b) * sign for a, b in zip(edges[2], edges[1])]
-    return normal, nearly_unit(shortened(along_u)) + [sign << 14], angles
-
-
-def sum_surfaces(indices, count, model, area_shift, out, uv_at, stride):
+def sum_surfaces(indices, count, shifts, has_uvs, out, uv_at, stride):
     """The sums of the normals and of the tangents of each vertex's triangles."""
     places = [struct.unpack_from("<3H", out, i * stride) + struct.unpack_from("<2H", out, i * stride + uv_at)
               for i in range(count)]
     sums = [([0] * 3, [0] * 4) for _ in places]
     for i in range(0, len(indices), 3):
         corners = indices[i:i + 3]
-        normal, tangent, angles = triangle_parts([places[c] for c in corners], model, area_shift)
-        for corner, angle in zip(corners, angles):
+        p, q, r = (places[c] for c in corners)
+        e, minus_e, minus_f = ([signed(a - b, 16) for a, b in zip(*ends)] for ends in ((q, p), (p, q), (p, r)))
+        normal = [signed(e[k] * minus_f[m] + minus_e[m] * minus_f[k], 32) >> shifts[0]
+                  for k, m in ((2, 1), (0, 2), (1, 0))]
+        along_u = [signed(e[k] * minus_f[4] + minus_f[k] * minus_e[4], 32) for k in range(4)]
+        tangent = [c >> shifts[1] for c in along_u]
+        if along_u[3] < 0:
+            tangent[:3] = [-c for c in tangent[:3]]
+        for corner in corners:
             for k in range(3):
-                sums[corner][0][k] += normal[k] * angle >> 14 if model in BY_ANGLE_MODELS else normal[k]
-            for k in range(4 if model not in X_TANGENT_MODELS else 0):
-                sums[corner][1][k] += tangent[k] * angle >> 14
-    signed = lambda c: (c + 2 ** 31) % 2 ** 32 - 2 ** 31
-    return [([signed(c) for c in normal], [signed(c) for c in tangent]) for normal, tangent in sums]
+                sums[corner][0][k] += normal[k]
+            for k in range(4 if has_uvs else 0):
+                sums[corner][1][k] += tangent[k]
+    return [([signed(c, 32) for c in normal], [signed(c, 32) for c in tangent]) for normal, tangent in sums]
+
+
+def angle_of(ratio):
+    square = ratio * ratio >> 14
+    series = 6700 - (square * (3051 - (square * 813 >> 14)) >> 14)
+    return ratio * (20843 - (square * series >> 14)) >> 14
 
 
 def rotation_of(normal, tangent):
-    """The largest component's number + 4 left-handed, and all four over the largest in units of 1 /
-    32768, of the quaternion of (t, cross(n, t), n)."""
-    n, t = unit(shortened(normal)), tangent[:3]
+    """The largest component's number, the angles of the other three in units of 45 degrees / 16383, and
+    whether it is left-handed, of the quaternion of (t, cross(n, t), n)."""
+    n, t = nearly_unit(shortened(normal)), tangent[:3]
     if all(c in (0, -1) for c in t):
         t[0] = 1 << 14
-    t = nearly_unit(shortened(t))
+    else:
+        t = shortened(t)
     along = dot(t, n) >> 14
-    t = unit(shortened([a - (b * along >> 14) for a, b in zip(t, n)]))
+    t = nearly_unit([a - (b * along >> 14) for a, b in zip(t, n)])
     b = [c >> 14 for c in cross(n, t)]
     xy, xz, yz = t[1] + b[0], t[2] + n[0], b[2] + n[1]
     xw, yw, zw = b[2] - n[1], n[0] - t[2], t[1] - b[0]
@@ -740,14 +607,29 @@ def rotation_of(normal, tangent):
     rows = [[one + t[0] - b[1] - n[2], xy, xz, xw], [xy, one - t[0] + b[1] - n[2], yz, yw],
             [xz, yz, one - t[0] - b[1] + n[2], zw], [xw, yw, zw, one + t[0] + b[1] + n[2]]]
     largest = max(range(4), key=lambda k: rows[k][k])
-    best = rows[largest][largest]
+    row = rows[largest]
+    best = row.pop(largest)
     x = best >> 2
     y = 90124 - (x * (102269 - (x * 40908 >> 14)) >> 14)
     y = 4 * (32758 - (x * y >> 14))
     for _ in range(2):
         y = y * (32768 - (best * y >> 16)) >> 14
-    components = [min(max(c * y >> 15, -ONE), ONE) for c in rows[largest]]
-    return largest + (4 if tangent[3] > 0 else 0), components
+    return largest, [angle_of(signed(c * y, 32) >> 16) for c in row], tangent[3] < 0
+
+
+def expected_frames(form, sums):
+    """What is expected of the numbers of each frame: a list for each number."""
+    frames = []
+    for largest, angles, is_left in (rotation_of(*each) for each in sums):
+        if form == "quat48":
+            bits = (is_left, largest & 1, largest >> 1)
+            frames.append([a + 16383 + (bit << 15) for a, bit in zip(angles, bits)])
+        else:
+            code = largest + 4 * is_left
+            for a in reversed(angles):
+                code = code * 811 + (a * 405 + 8192 >> 14) + 405
+            frames.append([code])
+    return [list(column) for column in zip(*frames)]
 
 
 def decode_vertices(mesh, indices, neighbours, part):
@@ -757,25 +639,28 @@ def decode_vertices(mesh, indices, neighbours, part):
     count = mesh.vertex_count
     words = [(0, 3, 2 if position == "quantised" else 4), (uv_at, 2, 2 if uv == "quantised" else 4)]
     words += [(color_at, 4, 1)] if color == "rgba8" else []
-    words += {"half3": [(frame_at, 3, 2)], "f32": [(frame_at, 4, 4)]}.get(frame, [])
-    in_digits = frame in ("quat48", "quat32")
-    size = 2 + count * (sum(numbers * size for _, numbers, size in words) + 7 * in_digits)
+    words += [(frame_at, *{"quat48": (3, 2), "quat32": (1, 4), "half3": (3, 2), "f32": (4, 4)}[frame])]
+    size = 3 + count * (sum(numbers * size for _, numbers, size in words) + 3 * (frame == "quat32"))
     stream = unwrap(part, size)
     require(len(stream) == size, "encoded geometry is damaged")
-    model, area_shift, at = stream[0], stream[1], 2
-    has_surface = model >= SURFACE_MODELS
-    require(area_shift <= 15 and model <= 5 and (model == 0 or in_digits) and
-            (not has_surface or position == uv == "quantised"), "encoded geometry is damaged")
-    out = bytearray(count * stride)
+    model, *shifts = stream[:3]
+    require(max(shifts) <= 15 and model <= 2 and
+            (model == 0 or frame in ("quat48", "quat32") and position == uv == "quantised"),
+            "encoded geometry is damaged")
+    out, at = bytearray(count * stride), 3
     for offset, numbers, size in words:
-        decode_words(stream, at, neighbours, numbers, size, out, offset, stride)
-        at += numbers * size * count
-    if in_digits:
-        rotations = [rotation_of(*sums) for sums in sum_surfaces(indices, count, model, area_shift, out, uv_at, stride)
-                     ] if has_surface else None
-        frames = FrameDecoder(frame, model, neighbours, rotations)
-        frames.decode(stream[at:at + count], read_numbers(stream, at + count, count, 3, 2))
-        frames.pack(out, frame_at, stride)
+        is_code = offset == frame_at and frame == "quat32"
+        differences = [code_differences(stream, at, count)] if is_code else \
+            read_numbers(stream, at, count, numbers, size)
+        expected = [None] * numbers
+        if offset == frame_at and model:
+            sums = sum_surfaces(indices, count, shifts, model == 1, out, uv_at, stride)
+            expected = expected_frames(frame, sums)
+        columns = [decode_words(d, neighbours, size, e) for d, e in zip(differences, expected)]
+        if size == 4 and not is_code:
+            columns = [[to_float_bits(value) for value in column] for column in columns]
+        put_words(columns, size, out, offset, stride)
+        at += (7 if is_code else numbers * size) * count
     return out
 
 

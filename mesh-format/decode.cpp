@@ -46,9 +46,11 @@ struct Workplace {
         if (!zstd) throw std::bad_alloc();
     }
 
-    /// Whether the Zstandard frame holds exactly `size` bytes, which then are at `out`.
-    bool unwrap(Bytes frame, std::byte* out, std::size_t size) {
-        return ZSTD_decompressDCtx(zstd.get(), out, size, frame.data(), frame.size()) == size;
+    /// How many bytes the Zstandard frames hold, which then are at `out`; more than `room` if they
+    /// are none or hold more than that.
+    std::size_t unwrap(Bytes frames, std::byte* out, std::size_t room) {
+        // Errors are the largest values.
+        return ZSTD_decompressDCtx(zstd.get(), out, room, frames.data(), frames.size());
     }
 };
 
@@ -79,22 +81,21 @@ class Workplaces {
 
 bool decode_mesh(const MeshRecord& mesh, Bytes index_part, Bytes vertex_part,
                  std::span<std::uint16_t> indices, std::byte* vertices, Workplace& workplace) {
-    const auto index_size = ZSTD_getFrameContentSize(index_part.data(), index_part.size());
-    // Errors are the largest values.
-    if (index_size > index_stream_bound(mesh.index_count)) return false;
     Scratch& scratch = workplace.scratch;
     scratch.reset();
-    std::byte* const index_stream = scratch.take<std::byte>(index_size);
+    const std::size_t index_room = index_stream_bound(mesh.index_count);
+    std::byte* const index_stream = scratch.take<std::byte>(index_room);
+    const std::size_t index_size = workplace.unwrap(index_part, index_stream, index_room);
     if (workplace.neighbours.size() < mesh.vertex_count)
         workplace.neighbours.resize(mesh.vertex_count);
     const std::span neighbours(workplace.neighbours.data(), mesh.vertex_count);
-    if (!workplace.unwrap(index_part, index_stream, index_size) ||
+    if (index_size > index_room ||
         !decode_indices({index_stream, index_size}, indices, neighbours, scratch))
         return false;
     scratch.reset();
     const std::size_t vertex_size = vertex_stream_bytes(mesh);
     std::byte* const vertex_stream = scratch.take<std::byte>(vertex_size);
-    return workplace.unwrap(vertex_part, vertex_stream, vertex_size) &&
+    return workplace.unwrap(vertex_part, vertex_stream, vertex_size) == vertex_size &&
            decode_vertices(mesh, indices, neighbours, vertex_stream, vertices, scratch);
 }
 
@@ -187,8 +188,9 @@ Payload decode_payload(const Document& document, std::size_t texture, std::strin
         const std::uint64_t offset = (first + i) * kPartBytes;
         const std::uint64_t expected = std::min(kPartBytes, size - offset);
         workplaces.with_one([&](Workplace& workplace) {
-            checker.require(workplace.unwrap(part, payload.memory.get() + offset, expected),
-                            "texture", texture, kDamaged);
+            checker.require(
+                workplace.unwrap(part, payload.memory.get() + offset, expected) == expected,
+                "texture", texture, kDamaged);
         });
     });
     return payload;

@@ -47,8 +47,14 @@ class Triangles {
     }
 
     unsigned pivot() const { return pivot_; }
-    unsigned second() const { return second_; }
     unsigned third() const { return third_; }
+
+    /// The last triangle's corners.
+    void put(Index* corners) const {
+        corners[0] = static_cast<Index>(pivot_);
+        corners[1] = static_cast<Index>(second_);
+        corners[2] = static_cast<Index>(third_);
+    }
 
     /// The vertex after the largest so far.
     unsigned next() const { return next_; }
@@ -212,6 +218,8 @@ class Encoder {
         return stream;
     }
 
+    const Triangles& triangles() const { return triangles_; }
+
     bool get(Corner corner, unsigned& vertex) {
         vertex = choice_.vertices[static_cast<std::size_t>(corner)];
         numbers_.push_back(zigzag(static_cast<Index>(vertex - last_)));
@@ -293,11 +301,13 @@ class Numbers {
 
 }  // namespace
 
-std::vector<std::byte> encode_indices(std::span<const std::uint16_t> indices,
+std::vector<std::byte> encode_indices(std::span<std::uint16_t> indices,
                                       std::span<Neighbours> neighbours) {
     Encoder encoder(neighbours);
-    for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         encoder.add(indices[i], indices[i + 1], indices[i + 2]);
+        encoder.triangles().put(&indices[i]);
+    }
     return encoder.finish();
 }
 
@@ -310,9 +320,7 @@ bool decode_indices(std::span<const std::byte> stream, std::span<std::uint16_t> 
     Index* out = indices.data();
     for (const std::byte code : stream.first(count)) {
         if (!triangles.add(std::to_integer<unsigned>(code), numbers)) return false;
-        out[0] = static_cast<Index>(triangles.pivot());
-        out[1] = static_cast<Index>(triangles.second());
-        out[2] = static_cast<Index>(triangles.third());
+        triangles.put(out);
         out += 3;
     }
     triangles.finish();

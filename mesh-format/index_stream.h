@@ -21,8 +21,9 @@ struct Neighbours {
 };
 
 /// The stream of triangles; sets the neighbours of all vertices, of which there are at most
-/// kMaxMeshVertices. Every index must be below their number.
-std::vector<std::byte> encode_indices(std::span<const std::uint16_t> indices,
+/// kMaxMeshVertices. Every index must be below their number. `indices` become those that the stream
+/// is decoded to: the same triangles, but each may start at another of its corners.
+std::vector<std::byte> encode_indices(std::span<std::uint16_t> indices,
                                       std::span<Neighbours> neighbours);
 
 /// The most bytes that a stream of `index_count` indices has: a code and three numbers a triangle.
@@ -30,8 +31,8 @@ constexpr std::size_t index_stream_bound(std::size_t index_count) {
     return index_count / 3 + 2 * index_count;
 }
 
-/// Sets the indices that a stream stands for, and the neighbours. A triangle may start at another
-/// of its corners than it did. False if the stream is none, or has an index that is no vertex.
+/// Sets the indices that a stream stands for, and the neighbours. False if the stream is none, or
+/// has an index that is no vertex.
 bool decode_indices(std::span<const std::byte> stream, std::span<std::uint16_t> indices,
                     std::span<Neighbours> neighbours, Scratch& scratch);
 

@@ -17,8 +17,8 @@
 //              of each, the section's own is 0
 //   encoded vertices, encoded indices
 //              in a compressed file, what becomes the sections vertices and indices, which are
-//              then empty: uint32[], the stored size of each mesh's part, then those parts, each a
-//              Zstandard frame. The indices' holds an index stream, see TriangleStart, the
+//              then empty: uint32[], the stored size of each mesh's part, then those parts, each
+//              Zstandard frames. The indices' hold an index stream, see TriangleStart, the
 //              vertices' a vertex stream, see FrameModel
 #pragma once
 
@@ -34,7 +34,7 @@ namespace mesh_format {
 static_assert(std::endian::native == std::endian::little, "files are little-endian");
 
 inline constexpr std::array<char, 8> kMagic{'C', 'W', '2', 'M', 'E', 'S', 'H', '\0'};
-inline constexpr std::uint32_t kVersion = 8;
+inline constexpr std::uint32_t kVersion = 9;
 inline constexpr std::uint64_t kSectionAlignment = 64;
 /// A mesh's vertices are addressed by 16-bit indices.
 inline constexpr std::uint32_t kMaxMeshVertices = 65'536;
@@ -119,8 +119,8 @@ enum TriangleEnd : std::uint32_t {
     kTriangleStart = 8,
 };
 
-/// A mesh's vertices in a compressed file are one byte, a FrameModel, another,
-/// SurfaceModel::area_shift, and planes of one byte a vertex. The vertex's parts follow each other:
+/// A mesh's vertices in a compressed file are three bytes, a FrameModel, SurfaceModel::normal_shift
+/// and tangent_shift, and planes of one byte a vertex. The vertex's parts follow each other:
 /// position, UV, colour, frame. A part of k numbers of n bytes each has k n planes: the lowest byte
 /// of the first number, of the second, ..., then the next bytes. A number stands for how much the
 /// vertex's differs from an expected one, d modulo 256^n: as 2 d, or as -2 d - 1 if d is negative.
@@ -128,24 +128,15 @@ enum TriangleEnd : std::uint32_t {
 /// The bits of a float count as a number once the first, or in negative floats all of them, are
 /// inverted.
 ///
-/// A frame in digits, see tangent_frame.h, has seven planes. The first holds the number of the
-/// largest component, + 4 if left-handed, xor the expected one. Then come three numbers of two
-/// bytes as above, but d is modulo the levels of a digit, 32,768 or 811, and the smallest such.
-/// They are of the digits in their order, or else of those but others[partner()] and last of that
-/// one. Expected is what FrameModel says.
+/// A frame of quat32 is one number of four bytes. By how much it differs is said by seven planes:
+/// of a number of one byte, the top, and of three of two bytes, the digits; see CodeDigits in
+/// frame_differences.h.
 enum class FrameModel : std::uint8_t {
-    /// Of the first byte that of neighbour a (of vertex 0: 0). Of each digit a + b - c modulo 2^16,
-    /// or FrameCode::rebased() of a where not all three have this vertex's largest component; of
-    /// vertex 0 the digit of ratio 0. The one for other forms.
-    neighbours,
-    x_tangent,  ///< the same, but others[partner()] last: FrameCode::of_x_tangent()
-    /// FrameCode::of_rotation() of sum_surfaces(), by area or by angle. This and the next
-    /// three only where positions and UVs are quantised.
-    surface_by_area,
-    surface_by_angle,
-    /// The same without UVs; others[partner()] last: FrameCode::of_x_tangent()
-    x_tangent_by_area,
-    x_tangent_by_angle,
+    neighbours,  ///< frames are expected as other parts are
+    /// As expect_quat48() and expect_quat32() of sum_surfaces() say; where positions and UVs are
+    /// quantised.
+    surface,
+    surface_without_uvs,  ///< the same: SurfaceModel::has_uvs
     count
 };
 

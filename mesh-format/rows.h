@@ -8,12 +8,9 @@
 
 namespace mesh_format {
 
-/// Position, three numbers of a frame, UV.
 using Row = std::uint16_t __attribute__((vector_size(16)));
 
 inline constexpr std::size_t kRowNumbers = 8;
-inline constexpr std::size_t kFirstDigit = 3;
-inline constexpr std::size_t kFirstUv = 6;
 
 /// Eight rows, of which each is given the first number of all, the second, ...
 inline void transpose(std::array<Row, kRowNumbers>& rows) {

@@ -7,23 +7,25 @@
 
 #include "mesh-format/index_stream.h"
 #include "mesh-format/layout.h"
+#include "mesh-format/surface.h"
 
 namespace mesh_format {
 
-/// Whether positions and UVs of these forms are numbers of rows.
-constexpr bool has_rows(const VertexForms& forms) {
+/// Whether position and UV of these forms are numbers of a Place.
+constexpr bool has_places(const VertexForms& forms) {
     return forms.position == PositionForm::quantised && forms.uv == UvForm::quantised;
 }
 
-/// Whether all of a vertex of these forms is a row.
+/// Whether decode_rows() takes vertices of these forms.
 constexpr bool are_rows(const VertexForms& forms) {
-    return has_rows(forms) &&
+    return has_places(forms) &&
            (forms.frame == FrameForm::quat48 || forms.frame == FrameForm::quat32) &&
            forms.color == ColorForm::none;
 }
 
-/// What decode_vertices() does, with the stream's planes.
-void decode_rows(const MeshRecord& mesh, FrameModel model, int area_shift,
+/// What decode_vertices() does, with the stream's planes. `model` is that of surfaces if frames are
+/// predicted from them.
+void decode_rows(const MeshRecord& mesh, const SurfaceModel* model,
                  std::span<const std::uint16_t> indices, std::span<const Neighbours> neighbours,
                  const std::byte* planes, std::byte* vertices, Scratch& scratch);
 

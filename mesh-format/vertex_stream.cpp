@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
+#include <cmath>
 #include <cstring>
-#include <limits>
+#include <type_traits>
 
+#include "mesh-format/frame_differences.h"
 #include "mesh-format/surface.h"
-#include "mesh-format/vertex_prediction.h"
 #include "mesh-format/vertex_rows.h"
 #include "mesh-format/zigzag.h"
 
@@ -15,372 +15,273 @@ namespace mesh_format {
 
 namespace {
 
-constexpr std::uint32_t kFramePlanes = 7;  // of quat48 and quat32
+/// Surfaces take some 15 ns a vertex to decode: a mesh has them where they save so many of its
+/// bits.
+constexpr double kLeastBitsSaved = 10;
 
-/// How much more a bit of a model's streams counts: they take twice the time to decode where frames
-/// come from surfaces, or once and a half where those have no UVs.
-constexpr double cost_of(FrameModel model) {
-    return !has_surface(model) ? 1 : has_partner(model) ? 11.0 / 10 : 6.0 / 5;
-}
+/// A part of a vertex of so many numbers. Floats are numbers of the same order, modulo 2^32.
+template <typename Number, std::size_t kCount>
+struct Numbers {
+    using Word = std::conditional_t<std::is_same_v<Number, float>, std::uint32_t, Number>;
+    using Values = std::array<Word, kCount>;
+    static constexpr std::size_t kPlanes = sizeof(Values);
 
-bool in_digits(FrameForm form) {
-    return form == FrameForm::quat48 || form == FrameForm::quat32;
-}
-
-std::uint32_t plane_count(const VertexForms& forms) {
-    return position_bytes(forms.position) + uv_bytes(forms.uv) + color_bytes(forms.color) +
-           (in_digits(forms.frame) ? kFramePlanes : frame_bytes(forms.frame));
-}
-
-/// The bits of a float to a number of the same order, modulo 2^32; other words stay as they are.
-template <typename Word>
-Word ordered(Word word) {
-    if constexpr (sizeof word == 4) return word >> 31 != 0 ? ~word : word | 0x8000'0000;
-    return word;
-}
-template <typename Word>
-Word unordered(Word word) {
-    if constexpr (sizeof word == 4) return word >> 31 != 0 ? word & 0x7FFF'FFFF : ~word;
-    return word;
-}
-
-/// Words of the numbers of one part of the vertices, in byte planes: the lowest byte of the first
-/// number of all vertices, of the second, ..., then the next bytes.
-template <typename Word>
-void split(std::span<const Word> words, std::size_t plane, std::size_t numbers, std::byte* planes) {
-    const std::size_t count = words.size();
-    for (std::size_t byte = 0; byte < sizeof(Word); ++byte) {
-        std::byte* const out = planes + (byte * numbers + plane) * count;
-        for (std::size_t i = 0; i < count; ++i) out[i] = std::byte(words[i] >> (8 * byte) & 0xFF);
+    static Word ordered(Word word) {
+        if constexpr (!std::is_same_v<Number, float>) return word;
+        return word >> 31 != 0 ? ~word : word | 0x8000'0000;
     }
-}
-template <typename Word>
-void join(const std::byte* planes, std::size_t plane, std::size_t numbers, std::span<Word> words) {
-    const std::size_t count = words.size();
-    const std::byte* const in = planes + plane * count;
-    for (std::size_t i = 0; i < count; ++i) {
-        Word word{};
-        for (std::size_t byte = 0; byte < sizeof(Word); ++byte)
-            word = static_cast<Word>(word | static_cast<Word>(in[byte * numbers * count + i])
-                                                << (8 * byte));
-        words[i] = unzigzag(word);
+    static Word unordered(Word word) {
+        if constexpr (!std::is_same_v<Number, float>) return word;
+        return word >> 31 != 0 ? word & 0x7FFF'FFFF : ~word;
     }
+
+    /// The differences of vertex `i` of `count` in byte planes: the lowest byte of the first number
+    /// of all vertices, of the second, ..., then the next bytes.
+    static void split(const Values& differences, std::byte* planes, std::size_t i,
+                      std::size_t count) {
+        for (std::size_t k = 0; k < kCount; ++k)
+            for (std::size_t byte = 0; byte < sizeof(Word); ++byte)
+                planes[(byte * kCount + k) * count + i] =
+                    std::byte(zigzag(differences[k]) >> (8 * byte) & 0xFF);
+    }
+    static Values joined(const std::byte* planes, std::size_t i, std::size_t count) {
+        Values differences;
+        for (std::size_t k = 0; k < kCount; ++k) {
+            Word word{};
+            for (std::size_t byte = 0; byte < sizeof(Word); ++byte)
+                word = static_cast<Word>(word |
+                                         static_cast<Word>(planes[(byte * kCount + k) * count + i])
+                                             << (8 * byte));
+            differences[k] = unzigzag(word);
+        }
+        return differences;
+    }
+};
+
+/// A code of quat32.
+struct FrameCode : Numbers<std::uint32_t, 1> {
+    static constexpr std::size_t kPlanes = 7;
+
+    static void split(const Values& difference, std::byte* planes, std::size_t i,
+                      std::size_t count) {
+        const CodeDigits all = digits_of(difference[0]);
+        planes[i] = std::byte(zigzag(all.top));
+        Numbers<std::uint16_t, 3>::split(all.digits, planes + count, i, count);
+    }
+    static Values joined(const std::byte* planes, std::size_t i, std::size_t count) {
+        return {code_difference({Numbers<std::uint16_t, 3>::joined(planes + count, i, count),
+                                 unzigzag(std::to_integer<std::uint8_t>(planes[i]))})};
+    }
+};
+
+/// Calls use(part, its offset in a vertex) for each part of the vertices, in the order in which the
+/// stream holds their planes; the frame is the last.
+template <typename Use>
+void for_each_part(const VertexForms& forms, Use use) {
+    const VertexLayout layout = vertex_layout(forms);
+    using Words = Numbers<std::uint16_t, 3>;
+    if (forms.position == PositionForm::quantised)
+        use(Words(), 0u);
+    else
+        use(Numbers<float, 3>(), 0u);
+    if (forms.uv == UvForm::quantised)
+        use(Numbers<std::uint16_t, 2>(), layout.uv_offset);
+    else
+        use(Numbers<float, 2>(), layout.uv_offset);
+    if (forms.color != ColorForm::none) use(Numbers<std::uint8_t, 4>(), layout.color_offset);
+    if (forms.frame == FrameForm::f32)
+        use(Numbers<float, 4>(), layout.frame_offset);
+    else if (forms.frame == FrameForm::quat32)
+        use(FrameCode(), layout.frame_offset);
+    else
+        use(Words(), layout.frame_offset);
 }
 
-/// A part of all vertices that is kNumbers words.
-template <typename Word, std::size_t kNumbers>
-class Words {
+/// The same part of all vertices of a mesh.
+template <typename Part>
+class Column {
  public:
-    static constexpr std::size_t kPlanes = kNumbers * sizeof(Word);
+    using Values = typename Part::Values;
 
-    Words(std::size_t stride, std::span<const Neighbours> neighbours)
-        : stride_(stride), neighbours_(neighbours) {}
+    /// `expected` is of all vertices, or else empty: then it is what the neighbours suggest.
+    Column(std::size_t stride, std::span<const Neighbours> neighbours,
+           std::span<const Values> expected)
+        : stride_(stride), neighbours_(neighbours), expected_(expected) {}
 
     void encode(const std::byte* vertices, std::byte* planes) const {
-        std::array<std::vector<Word>, kNumbers> words;
-        for (auto& each : words) each.resize(neighbours_.size());
         for (std::size_t i = 0; i < neighbours_.size(); ++i) {
-            const Values value = at(vertices + i * stride_);
-            const Values expected = predicted(i, vertices);
-            for (std::size_t k = 0; k < kNumbers; ++k)
-                words[k][i] = zigzag(static_cast<Word>(value[k] - expected[k]));
+            Values values = at(vertices + i * stride_);
+            const Values expected = expected_at(i, vertices);
+            for (std::size_t k = 0; k < values.size(); ++k) values[k] -= expected[k];
+            Part::split(values, planes, i, neighbours_.size());
         }
-        for (std::size_t k = 0; k < kNumbers; ++k) split<Word>(words[k], k, kNumbers, planes);
     }
 
     void decode(const std::byte* planes, std::byte* vertices) const {
-        std::array<std::vector<Word>, kNumbers> words;
-        for (std::size_t k = 0; k < kNumbers; ++k) {
-            words[k].resize(neighbours_.size());
-            join<Word>(planes, k, kNumbers, words[k]);
-        }
         for (std::size_t i = 0; i < neighbours_.size(); ++i) {
-            Values value = predicted(i, vertices);
-            for (std::size_t k = 0; k < kNumbers; ++k)
-                value[k] = unordered(static_cast<Word>(value[k] + words[k][i]));
-            // One by one: processors wait where words are written and read as something longer.
-            for (std::size_t k = 0; k < kNumbers; ++k)
-                std::memcpy(vertices + i * stride_ + k * sizeof(Word), &value[k], sizeof(Word));
+            Values values = Part::joined(planes, i, neighbours_.size());
+            const Values expected = expected_at(i, vertices);
+            for (std::size_t k = 0; k < values.size(); ++k) {
+                values[k] += expected[k];
+                values[k] = Part::unordered(values[k]);
+            }
+            std::memcpy(vertices + i * stride_, &values, sizeof values);
         }
     }
 
  private:
-    using Values = std::array<Word, kNumbers>;
-
     static Values at(const std::byte* vertex) {
         Values values;
-        for (std::size_t k = 0; k < kNumbers; ++k) {
-            std::memcpy(&values[k], vertex + k * sizeof(Word), sizeof(Word));
-            values[k] = ordered(values[k]);
-        }
+        std::memcpy(&values, vertex, sizeof values);
+        for (auto& value : values) value = Part::ordered(value);
         return values;
     }
 
-    Values predicted(std::size_t i, const std::byte* vertices) const {
+    Values expected_at(std::size_t i, const std::byte* vertices) const {
+        if (!expected_.empty()) return expected_[i];
         if (i == 0) return {};
-        const Values a = at(vertices + neighbours_[i].a * stride_);
+        Values sum = at(vertices + neighbours_[i].a * stride_);
         const Values b = at(vertices + neighbours_[i].b * stride_);
         const Values c = at(vertices + neighbours_[i].c * stride_);
-        Values sum;
-        for (std::size_t k = 0; k < kNumbers; ++k) sum[k] = static_cast<Word>(a[k] + b[k] - c[k]);
+        for (std::size_t k = 0; k < sum.size(); ++k) {
+            sum[k] += b[k];
+            sum[k] -= c[k];
+        }
         return sum;
     }
 
     std::size_t stride_;
     std::span<const Neighbours> neighbours_;
+    std::span<const Values> expected_;
 };
 
-/// The tangent frames of all vertices, if they are of a form in digits.
-template <FrameForm kForm, bool kHasPartner, bool kHasSurface>
-class Frames {
- public:
-    static constexpr std::size_t kPlanes = kFramePlanes;
-
-    /// `surfaces` are for models that use them, for whole Rotations.
-    Frames(std::size_t stride, std::span<const Neighbours> neighbours,
-           std::span<const Surface> surfaces)
-        : stride_(stride),
-          neighbours_(neighbours),
-          surfaces_(surfaces),
-          frames_(neighbours.size()),
-          tops_(neighbours.size()) {
-        for (auto& each : words_) each.resize(neighbours.size());
-    }
-
-    void encode(const std::byte* vertices, std::byte* planes) {
-        for (FrameDigits& frame : frames_) {
-            frame = Code::take_apart(vertices);
-            vertices += stride_;
-        }
-        for (std::size_t i = 0; i < frames_.size(); ++i) code<true>(i);
-        split<std::uint8_t>(tops_, 0, 1, planes);
-        planes += tops_.size();
-        for (std::size_t k = 0; k < 3; ++k) split<std::uint16_t>(words_[k], k, 3, planes);
-    }
-
-    void decode(const std::byte* planes, std::byte* vertices) {
-        std::memcpy(tops_.data(), planes, tops_.size());
-        planes += tops_.size();
-        for (std::size_t k = 0; k < 3; ++k) join<std::uint16_t>(planes, k, 3, words_[k]);
-        for (std::size_t i = 0; i < frames_.size(); ++i) {
-            code<false>(i);
-            Code::put_together(frames_[i], vertices + i * stride_);
-        }
-    }
-
- private:
-    using Code = FrameCode<kForm>;
-
-    /// A vertex's frame to what it differs from the expected one by, or the other way.
-    template <bool kEncode>
-    void code(std::size_t i) {
-        if (kHasSurface && i % Rotations::kCount == 0) rotations_of(&surfaces_[i], rotations_);
-        FrameDigits& frame = frames_[i];
-        const std::uint16_t top = expected_top(i);
-        if constexpr (kEncode)
-            tops_[i] = static_cast<std::uint8_t>(frame.top ^ top);
-        else
-            frame.top = tops_[i] ^ top;
-        Digits expected;
-        expect(i, expected);
-        if constexpr (kHasPartner) {
-            const std::uint32_t place = partner(frame.top & 3u);
-            const std::uint32_t first = place == 0 ? 1 : 0;
-            const std::uint32_t second = place == 2 ? 1 : 2;
-            code_digit<kEncode>(words_[0][i], expected[first], frame.others[first]);
-            code_digit<kEncode>(words_[1][i], expected[second], frame.others[second]);
-            code_digit<kEncode>(words_[2][i],
-                                Code::of_x_tangent(frame.others[first], frame.others[second]),
-                                frame.others[place]);
-        } else {
-            for (std::size_t k = 0; k < 3; ++k)
-                code_digit<kEncode>(words_[k][i], expected[k], frame.others[k]);
-        }
-    }
-
-    std::uint16_t expected_top(std::size_t i) const {
-        if constexpr (kHasSurface)
-            return static_cast<std::uint16_t>(rotations_.tops[i % Rotations::kCount]);
-        return i > 0 ? frames_[neighbours_[i].a].top : 0;
-    }
-
-    /// Modulo 2^16.
-    void expect(std::size_t i, Digits& expected) const {
-        const std::uint32_t largest = frames_[i].top & 3u;
-        if constexpr (kHasSurface)
-            return Code::of_rotation(rotations_, i % Rotations::kCount, largest, expected);
-        if (i == 0) return expected.fill(Code::kZero);
-        const Neighbours& at = neighbours_[i];
-        const FrameDigits& a = frames_[at.a];
-        const FrameDigits& b = frames_[at.b];
-        const FrameDigits& c = frames_[at.c];
-        if (((a.top ^ largest) | (b.top ^ largest) | (c.top ^ largest)) & 3u) [[unlikely]]
-            return Code::rebased(a, largest, expected);
-        for (std::size_t k = 0; k < 3; ++k)
-            expected[k] = static_cast<std::int16_t>(a.others[k] + b.others[k] - c.others[k]);
-    }
-
-    /// Differences are modulo the number of levels, and as small as that allows.
-    template <bool kEncode>
-    static void code_digit(std::uint16_t& word, int expected, std::int16_t& digit) {
-        if constexpr (kEncode) {
-            int difference = digit - expected;
-            if (difference >= (Code::kLevels + 1) / 2) difference -= Code::kLevels;
-            if (difference < -(Code::kLevels / 2)) difference += Code::kLevels;
-            word = zigzag(static_cast<std::uint16_t>(difference));
-        } else {
-            digit = static_cast<std::int16_t>(
-                Code::reduced(expected + static_cast<std::int16_t>(word)));
-        }
-    }
-
-    std::size_t stride_;
-    std::span<const Neighbours> neighbours_;
-    std::span<const Surface> surfaces_;
-    Rotations rotations_{};  // of the vertices at hand
-    std::vector<FrameDigits> frames_;
-    std::vector<std::uint8_t> tops_;  // what differs between a frame's and the expected one
-    std::array<std::vector<std::uint16_t>, 3> words_;
-};
-
-/// Calls use(part, its offset in a vertex) for each part of the vertices but frames in digits, in
-/// the order in which the stream holds their planes.
-template <typename Use>
-void for_each_words(const VertexForms& forms, std::span<const Neighbours> neighbours, Use use) {
-    const VertexLayout layout = vertex_layout(forms);
-    const auto words = [&]<typename Word, std::size_t kNumbers>(std::uint32_t offset) {
-        use(Words<Word, kNumbers>(layout.stride, neighbours), offset);
-    };
-    using std::uint16_t, std::uint32_t, std::uint8_t;
-    if (forms.position == PositionForm::quantised)
-        words.template operator()<uint16_t, 3>(0);
-    else
-        words.template operator()<uint32_t, 3>(0);
-    if (forms.uv == UvForm::quantised)
-        words.template operator()<uint16_t, 2>(layout.uv_offset);
-    else
-        words.template operator()<uint32_t, 2>(layout.uv_offset);
-    if (forms.color != ColorForm::none) words.template operator()<uint8_t, 4>(layout.color_offset);
-    if (forms.frame == FrameForm::half3)
-        words.template operator()<uint16_t, 3>(layout.frame_offset);
-    if (forms.frame == FrameForm::f32) words.template operator()<uint32_t, 4>(layout.frame_offset);
-}
-
-/// Positions and UVs, both quantised.
-std::vector<Row> rows_of(const MeshRecord& mesh, const std::byte* vertices) {
+std::vector<Place> places_of(const MeshRecord& mesh, const std::byte* vertices) {
     const VertexLayout layout = vertex_layout(mesh.forms);
-    std::vector<Row> rows(mesh.vertex_count);
-    for (Row& row : rows) {
+    std::vector<Place> places(mesh.vertex_count);
+    for (Place& place : places) {
         std::array<std::uint16_t, kRowNumbers> numbers{};
         std::memcpy(numbers.data(), vertices, position_bytes(PositionForm::quantised));
-        std::memcpy(&numbers[kFirstUv], vertices + layout.uv_offset, uv_bytes(UvForm::quantised));
-        std::memcpy(&row, numbers.data(), sizeof row);
+        std::memcpy(&numbers[3], vertices + layout.uv_offset, uv_bytes(UvForm::quantised));
+        std::memcpy(&place, numbers.data(), sizeof place);
         vertices += layout.stride;
     }
-    return rows;
+    return places;
 }
 
-/// Calls use(frames) for frames in digits; `rows` are for models that use surfaces.
-template <typename Use>
-void with_frames(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
-                 std::span<const Row> rows, FrameModel model, int area_shift,
-                 std::span<const Neighbours> neighbours, Use use) {
-    const std::size_t stride = vertex_layout(mesh.forms).stride;
-    std::vector<Surface> surfaces;
-    if (has_surface(model)) {
-        surfaces.resize(mesh.vertex_count + Rotations::kCount);
-        sum_surfaces(indices, rows.data(), surface_of(model, area_shift), surfaces);
+/// What surfaces suggest of the frames of all vertices.
+template <typename Part>
+std::vector<typename Part::Values> frames_of(std::span<const std::uint16_t> indices,
+                                             std::span<const Place> places,
+                                             const SurfaceModel& model) {
+    std::vector<Surface> surfaces(places.size() + kFrameLanes);
+    sum_surfaces(indices, places.data(), model, surfaces);
+    std::vector<typename Part::Values> frames(surfaces.size());
+    for (std::size_t i = 0; i < places.size(); i += kFrameLanes) {
+        if constexpr (std::is_same_v<Part, FrameCode>) {
+            std::array<std::uint32_t, kFrameLanes> codes;
+            expect_quat32(&surfaces[i], codes);
+            for (std::size_t lane = 0; lane < kFrameLanes; ++lane) frames[i + lane] = {codes[lane]};
+        } else if constexpr (std::is_same_v<Part, Numbers<std::uint16_t, 3>>) {
+            std::array<Row, 3> words;
+            expect_quat48(&surfaces[i], words);
+            for (std::size_t lane = 0; lane < kFrameLanes; ++lane)
+                frames[i + lane] = {words[0][lane], words[1][lane], words[2][lane]};
+        }
     }
-    with_model(mesh.forms.frame, model, [&]<FrameForm kForm, bool kHasPartner, bool kHasSurface>() {
-        use(Frames<kForm, kHasPartner, kHasSurface>(stride, neighbours, surfaces));
+    frames.resize(places.size());
+    return frames;
+}
+
+/// Whether frames of the mesh may be predicted from surfaces.
+bool may_have_surfaces(const VertexForms& forms) {
+    return has_places(forms) &&
+           (forms.frame == FrameForm::quat48 || forms.frame == FrameForm::quat32);
+}
+
+bool have_uvs(std::span<const Place> places) {
+    return std::ranges::any_of(places, [&](const Place& place) {
+        return place[3] != places[0][3] || place[4] != places[0][4];
     });
 }
 
-/// Whether a stream of the mesh may say so.
-bool allows(const VertexForms& forms, FrameModel model) {
-    if (model == FrameModel::neighbours) return true;
-    return model < FrameModel::count && in_digits(forms.frame) &&
-           (!has_surface(model) || has_rows(forms));
-}
-
-/// About how many bits planes will take.
-std::size_t bits_of(std::span<const std::byte> planes) {
-    std::size_t bits = 0;
-    for (const std::byte byte : planes)
-        bits += static_cast<std::size_t>(std::bit_width(std::to_integer<unsigned>(byte)));
-    return bits;
+/// How many bits a vertex's bytes in planes take at least in codes of their own.
+double entropy(std::span<const std::byte> planes, std::size_t vertex_count) {
+    double bits = 0;
+    for (; !planes.empty(); planes = planes.subspan(vertex_count)) {
+        std::array<std::uint32_t, 256> counts{};
+        for (const std::byte byte : planes.first(vertex_count))
+            ++counts[std::to_integer<std::size_t>(byte)];
+        for (const std::uint32_t count : counts)
+            if (count > 0) bits -= count * std::log2(count / static_cast<double>(vertex_count));
+    }
+    return bits / static_cast<double>(vertex_count);
 }
 
 }  // namespace
 
 std::size_t vertex_stream_bytes(const MeshRecord& mesh) {
-    return kVertexStreamHead + std::size_t{mesh.vertex_count} * plane_count(mesh.forms);
+    std::size_t planes = 0;
+    for_each_part(mesh.forms, [&](auto part, std::uint32_t) { planes += part.kPlanes; });
+    return kVertexStreamHead + std::size_t{mesh.vertex_count} * planes;
 }
 
 std::vector<std::byte> encode_vertices(const MeshRecord& mesh,
                                        std::span<const std::uint16_t> indices,
                                        std::span<const Neighbours> neighbours,
                                        const std::byte* vertices) {
+    const VertexLayout layout = vertex_layout(mesh.forms);
     std::vector<std::byte> stream(vertex_stream_bytes(mesh));
     std::byte* planes = stream.data() + kVertexStreamHead;
-    for_each_words(mesh.forms, neighbours, [&](auto part, std::uint32_t offset) {
-        part.encode(vertices + offset, planes);
+    for_each_part(mesh.forms, [&](auto part, std::uint32_t offset) {
+        Column<decltype(part)>(layout.stride, neighbours, {}).encode(vertices + offset, planes);
         planes += part.kPlanes * mesh.vertex_count;
     });
-    if (!in_digits(mesh.forms.frame)) return stream;
-    const std::size_t other_bits = bits_of({stream.data() + kVertexStreamHead, planes});
-    std::vector<Row> rows;
-    int area_shift = 0;
-    if (has_rows(mesh.forms)) {
-        rows = rows_of(mesh, vertices);
-        area_shift = fitting_area_shift(indices, rows.data());
-    }
-    stream[1] = static_cast<std::byte>(area_shift);
-    double least_cost = std::numeric_limits<double>::max();
-    std::vector<std::byte> candidate(std::size_t{kFramePlanes} * mesh.vertex_count);
-    const auto consider = [&](FrameModel model) {
-        if (!allows(mesh.forms, model)) return;
-        with_frames(mesh, indices, rows, model, area_shift, neighbours, [&](auto frames) {
-            frames.encode(vertices + vertex_layout(mesh.forms).frame_offset, candidate.data());
-        });
-        const double cost = static_cast<double>(other_bits + bits_of(candidate)) * cost_of(model);
-        if (cost >= least_cost) return;
-        least_cost = cost;
-        stream[0] = static_cast<std::byte>(model);
-        std::ranges::copy(candidate, planes);
-    };
-    consider(FrameModel::neighbours);
-    const double cost_of_neighbours = least_cost;
-    consider(FrameModel::x_tangent);
-    // Where tangents are the x axis that saves a part of the frames' bits, else next to none.
-    const bool is_x = least_cost < 0.97 * cost_of_neighbours;
-    consider(is_x ? FrameModel::x_tangent_by_area : FrameModel::surface_by_area);
-    consider(is_x ? FrameModel::x_tangent_by_angle : FrameModel::surface_by_angle);
+    if (!may_have_surfaces(mesh.forms)) return stream;
+    const std::vector<Place> places = places_of(mesh, vertices);
+    const SurfaceModel model = fitting_model(indices, places.data(), have_uvs(places));
+    for_each_part(mesh.forms, [&](auto part, std::uint32_t offset) {
+        if (offset != layout.frame_offset) return;
+        const auto frames = frames_of<decltype(part)>(indices, places, model);
+        std::vector<std::byte> candidate(part.kPlanes * mesh.vertex_count);
+        Column<decltype(part)>(layout.stride, neighbours, frames)
+            .encode(vertices + offset, candidate.data());
+        const std::span own = std::span(stream).last(candidate.size());
+        const std::size_t count = mesh.vertex_count;
+        if (entropy(own, count) - entropy(candidate, count) < kLeastBitsSaved) return;
+        std::ranges::copy(candidate, own.begin());
+        stream[0] =
+            std::byte(model.has_uvs ? FrameModel::surface : FrameModel::surface_without_uvs);
+        stream[1] = std::byte(model.normal_shift);
+        stream[2] = std::byte(model.tangent_shift);
+    });
     return stream;
 }
 
 bool decode_vertices(const MeshRecord& mesh, std::span<const std::uint16_t> indices,
                      std::span<const Neighbours> neighbours, const std::byte* stream,
                      std::byte* vertices, Scratch& scratch) {
-    const auto model = static_cast<FrameModel>(stream[0]);
-    const int area_shift = std::to_integer<int>(stream[1]);
-    if (!allows(mesh.forms, model) || area_shift > kMaxAreaShift) return false;
+    const auto frame_model = static_cast<FrameModel>(stream[0]);
+    const SurfaceModel surface{frame_model == FrameModel::surface, std::to_integer<int>(stream[1]),
+                               std::to_integer<int>(stream[2])};
+    const bool has_surfaces = frame_model != FrameModel::neighbours;
+    if (frame_model >= FrameModel::count || surface.normal_shift > kMaxSurfaceShift ||
+        surface.tangent_shift > kMaxSurfaceShift ||
+        (has_surfaces && !may_have_surfaces(mesh.forms)))
+        return false;
     const std::byte* planes = stream + kVertexStreamHead;
     if (are_rows(mesh.forms)) {
-        decode_rows(mesh, model, area_shift, indices, neighbours, planes, vertices, scratch);
+        decode_rows(mesh, has_surfaces ? &surface : nullptr, indices, neighbours, planes, vertices,
+                    scratch);
         return true;
     }
-    for_each_words(mesh.forms, neighbours, [&](auto part, std::uint32_t offset) {
-        part.decode(planes, vertices + offset);
+    const VertexLayout layout = vertex_layout(mesh.forms);
+    for_each_part(mesh.forms, [&](auto part, std::uint32_t offset) {
+        std::vector<typename decltype(part)::Values> frames;
+        if (has_surfaces && offset == layout.frame_offset)
+            frames = frames_of<decltype(part)>(indices, places_of(mesh, vertices), surface);
+        Column<decltype(part)>(layout.stride, neighbours, frames).decode(planes, vertices + offset);
         planes += part.kPlanes * mesh.vertex_count;
     });
-    if (in_digits(mesh.forms.frame)) {
-        const std::vector<Row> rows =
-            has_surface(model) ? rows_of(mesh, vertices) : std::vector<Row>();
-        with_frames(mesh, indices, rows, model, area_shift, neighbours, [&](auto frames) {
-            frames.decode(planes, vertices + vertex_layout(mesh.forms).frame_offset);
-        });
-    }
     return true;
 }
 

@@ -13,13 +13,13 @@
 namespace mesh_format {
 
 /// Bytes of a stream before its planes.
-inline constexpr std::size_t kVertexStreamHead = 2;
+inline constexpr std::size_t kVertexStreamHead = 3;
 
 /// Bytes of a mesh's stream.
 std::size_t vertex_stream_bytes(const MeshRecord& mesh);
 
 /// The stream of `mesh`, whose vertices start at those given. `indices` are as they are once
-/// decoded, but for the corners at which triangles start; `neighbours` came with them.
+/// decoded; `neighbours` came with them.
 std::vector<std::byte> encode_vertices(const MeshRecord& mesh,
                                        std::span<const std::uint16_t> indices,
                                        std::span<const Neighbours> neighbours,

@@ -8,7 +8,6 @@
 
 #include "mesh-format/file.h"
 #include "mesh-format/tangent_frame.h"
-#include "mesh-format/vertex_prediction.h"
 #include "mesh-format/vertex_stream.h"
 #include "random_triangles.h"
 #include "surface_truth.h"
@@ -66,22 +65,22 @@ std::vector<VertexForms> all_forms() {
     return all;
 }
 
-std::vector<Neighbours> neighbours_of(const MeshRecord& mesh, const Indices& indices) {
+std::vector<Neighbours> neighbours_of(const MeshRecord& mesh, Indices indices) {
     std::vector<Neighbours> neighbours(mesh.vertex_count);
     encode_indices(indices, neighbours);
     return neighbours;
 }
 
-std::vector<Row> rows_of(const MeshRecord& mesh, const Bytes& vertices) {
+std::vector<Place> places_of(const MeshRecord& mesh, const Bytes& vertices) {
     const VertexLayout layout = vertex_layout(mesh.forms);
-    std::vector<Row> rows;
+    std::vector<Place> places;
     for (std::size_t v = 0; v < mesh.vertex_count; ++v) {
         std::uint16_t numbers[kRowNumbers]{};
         std::memcpy(numbers, &vertices[v * layout.stride], 6);
-        std::memcpy(&numbers[kFirstUv], &vertices[v * layout.stride + layout.uv_offset], 4);
-        std::memcpy(&rows.emplace_back(), numbers, sizeof numbers);
+        std::memcpy(&numbers[3], &vertices[v * layout.stride + layout.uv_offset], 4);
+        std::memcpy(&places.emplace_back(), numbers, sizeof numbers);
     }
-    return rows;
+    return places;
 }
 
 Bytes encoded(const MeshRecord& mesh, const Indices& indices, const Bytes& vertices) {
@@ -118,11 +117,12 @@ TEST(VertexStream, TheLargestMeshesComeBack) {
     EXPECT_EQ(decoded(mesh, indices, encoded(mesh, indices, vertices)), vertices);
 }
 
-Bytes random_stream(const MeshRecord& mesh, int model, int area_shift, std::mt19937& random) {
+Bytes random_stream(const MeshRecord& mesh, int model, int shift, std::mt19937& random) {
     Bytes stream(vertex_stream_bytes(mesh));
     for (std::byte& byte : stream) byte = std::byte(random() & 0xFF);
     stream[0] = std::byte(model);
-    stream[1] = std::byte(area_shift);
+    stream[1] = std::byte(shift);
+    stream[2] = std::byte(kMaxSurfaceShift - shift);
     return stream;
 }
 
@@ -136,7 +136,7 @@ TEST(VertexStream, IsTheSameOnEveryProcessor) {
             sum =
                 sum * 31 + checksum(decoded(mesh, sheet(), random_stream(mesh, model, 3, random)));
     }
-    EXPECT_EQ(sum, 749279741258991316u);
+    EXPECT_EQ(sum, 5626604179761547317u);
 }
 
 /// On a sheet of parallelograms all but its border is foreseen.
@@ -160,47 +160,19 @@ TEST(VertexStream, AnyBytesBecomeVerticesOrAreRefused) {
     std::mt19937 random(7);
     for (const VertexForms& forms : all_forms()) {
         const MeshRecord mesh{.forms = forms, .vertex_count = 400};
-        for (int i = 0; i < 5 * (kModelCount + 1); ++i) {
+        for (int i = 0; i < 9 * (kModelCount + 1); ++i) {
             const int model = i % (kModelCount + 1);
-            const int area_shift = i % (kMaxAreaShift + 2);
-            const Bytes stream = random_stream(mesh, model, area_shift, random);
+            const int shift = i % (kMaxSurfaceShift + 3) - 1;
+            const Bytes stream = random_stream(mesh, model, shift, random);
             Bytes vertices(std::size_t{mesh.vertex_count} * vertex_layout(forms).stride);
             const bool in_digits = forms.frame <= FrameForm::quat32;
             const bool quantised =
                 forms.position == PositionForm::quantised && forms.uv == UvForm::quantised;
-            const bool sound = model == 0   ? true
-                               : model == 1 ? in_digits
-                                            : in_digits && quantised && model < kModelCount;
+            const bool sound = model == 0 || (in_digits && quantised && model < kModelCount);
             Scratch scratch;
             EXPECT_EQ(decode_vertices(mesh, sheet(), neighbours_of(mesh, sheet()), stream.data(),
                                       vertices.data(), scratch),
-                      sound && area_shift <= kMaxAreaShift);
-        }
-    }
-}
-
-/// Corners where a decoded triangle starts may be others than those that were encoded.
-TEST(VertexStream, ItIsTheSameWhereverTrianglesStart) {
-    for (const FrameForm form : {FrameForm::quat48, FrameForm::quat32}) {
-        const MeshRecord mesh{.forms = {.frame = form}, .vertex_count = 400};
-        std::mt19937 random(17);
-        for (int model = 0; model < kModelCount; ++model) {
-            const Bytes stream = random_stream(mesh, model, 3, random);
-            const Indices indices = sheet();
-            Indices turned = indices;
-            for (std::size_t i = 0; i < turned.size(); i += 3) {
-                const auto at = turned.begin() + static_cast<std::ptrdiff_t>(i);
-                std::rotate(at, at + i / 3 % 3, at + 3);
-            }
-            const std::vector<Neighbours> neighbours = neighbours_of(mesh, indices);
-            const auto vertices_of = [&](const Indices& of) {
-                Bytes vertices(std::size_t{mesh.vertex_count} * vertex_layout(mesh.forms).stride);
-                Scratch scratch;
-                EXPECT_TRUE(
-                    decode_vertices(mesh, of, neighbours, stream.data(), vertices.data(), scratch));
-                return vertices;
-            };
-            EXPECT_EQ(vertices_of(turned), vertices_of(indices)) << model;
+                      sound && shift >= 0 && shift <= kMaxSurfaceShift);
         }
     }
 }
@@ -218,19 +190,17 @@ void expect_foreseen(FrameForm form, FrameModel model) {
                                           std::uint16_t(1000 * (v / kSide) + random() % 300),
                                           std::uint16_t(random() % 2000)};
         std::memcpy(vertex, position, sizeof position);
-        if (has_partner(model)) continue;
+        if (model == FrameModel::surface_without_uvs) continue;
         const std::uint16_t uv[] = {std::uint16_t(700 * (v % kSide) + random() % 200),
                                     std::uint16_t(30'000 - 900 * (v / kSide) + random() % 200)};
         std::memcpy(vertex + layout.uv_offset, uv, sizeof uv);
     }
-    const std::vector<SurfaceTruth> truth = surface_truth(
-        indices, rows_of(mesh, vertices),
-        model == FrameModel::surface_by_angle || model == FrameModel::x_tangent_by_angle);
+    const std::vector<SurfaceTruth> truth = surface_truth(indices, places_of(mesh, vertices));
     for (std::uint16_t v = 0; v < mesh.vertex_count; ++v) {
         TangentFrame frame{{1.0f, 0.0f, 0.0f}, {}, truth[v].is_mirrored ? -1.0f : 1.0f};
         for (std::size_t axis = 0; axis < 3; ++axis) {
             frame.normal[axis] = static_cast<float>(truth[v].normal[axis]);
-            if (!has_partner(model))
+            if (model == FrameModel::surface)
                 frame.tangent[axis] = static_cast<float>(truth[v].tangent[axis]);
         }
         pack_frame(form, frame, &vertices[v * std::size_t{layout.stride} + layout.frame_offset]);
@@ -245,9 +215,7 @@ void expect_foreseen(FrameForm form, FrameModel model) {
 
 TEST(VertexStream, FramesAreForeseen) {
     for (const FrameForm form : {FrameForm::quat48, FrameForm::quat32})
-        for (const FrameModel model :
-             {FrameModel::surface_by_area, FrameModel::surface_by_angle,
-              FrameModel::x_tangent_by_area, FrameModel::x_tangent_by_angle})
+        for (const FrameModel model : {FrameModel::surface, FrameModel::surface_without_uvs})
             expect_foreseen(form, model);
 }
 
