@@ -69,13 +69,9 @@ struct FaceLanes {
     std::uint32_t preserving[kLanes];  ///< 1 or 0
     std::uint32_t usable[kLanes];      ///< 1 or 0
 
-    void load(std::size_t i, const SourceScene& scene, const FramedTriangles& triangles,
-              std::size_t face) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Corner& corner = triangles.vertices[triangles.indices[3 * face + k]].corner;
-            position[k].set(i, scene.positions[corner.position]);
-            uv[k][i] = scene.uvs[corner.uv];
-        }
+    void set(std::size_t i, std::size_t k, const SourceScene& scene, const Corner& corner) {
+        position[k].set(i, scene.positions[corner.position]);
+        uv[k][i] = scene.uvs[corner.uv];
     }
 
     CW2_INLINE void compute() {
@@ -118,6 +114,66 @@ struct FaceLanes {
     }
 };
 
+/// The spokes of faces, at corners with these normals and edges, which it flattens.
+CW2_INLINE void make_spokes(const FaceLanes& face, const Lanes& normal, Lanes& to_previous,
+                            Lanes& to_next, SpokeLanes& spokes) {
+    flatten(face.s, normal, spokes.s);
+    flatten(face.t, normal, spokes.t);
+    flatten(to_previous, normal, to_previous);
+    flatten(to_next, normal, to_next);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const float cosine = to_previous.x[i] * to_next.x[i] + to_previous.y[i] * to_next.y[i] +
+                             to_previous.z[i] * to_next.z[i];
+        const float angle = arc_cosine(cosine > 1.0f ? 1.0f : cosine < -1.0f ? -1.0f : cosine);
+        spokes.weighted_s.x[i] = angle * spokes.s.x[i];
+        spokes.weighted_s.y[i] = angle * spokes.s.y[i];
+        spokes.weighted_s.z[i] = angle * spokes.s.z[i];
+        spokes.preserving[i] = face.preserving[i];
+        spokes.usable[i] = face.usable[i];
+    }
+}
+
+/// What the spokes of whole faces are made of.
+struct FaceBatch {
+    FaceLanes face;
+    Lanes normal[3];
+
+    /// Returns whether the face is degenerate.
+    bool load(std::size_t i, const SourceScene& scene, const FramedTriangles& triangles,
+              std::size_t index) {
+        std::uint32_t at[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Corner& corner = triangles.vertices[triangles.indices[3 * index + k]].corner;
+            at[k] = corner.position;
+            face.set(i, k, scene, corner);
+            normal[k].set(i, scene.normals[corner.normal]);
+        }
+        // Not ||: no processor foresees such faces.
+        return (at[0] == at[1]) | (at[1] == at[2]) | (at[2] == at[0]);
+    }
+
+    CW2_INLINE void compute_at(std::size_t corner, SpokeLanes& spokes) const {
+        const PointLanes& here = face.position[corner];
+        const PointLanes& next = face.position[(corner + 1) % 3];
+        const PointLanes& previous = face.position[(corner + 2) % 3];
+        Lanes to_previous, to_next;
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            to_previous.x[i] = previous.xy[i].x - here.xy[i].x;
+            to_previous.y[i] = previous.xy[i].y - here.xy[i].y;
+            to_previous.z[i] = previous.z[i] - here.z[i];
+            to_next.x[i] = next.xy[i].x - here.xy[i].x;
+            to_next.y[i] = next.xy[i].y - here.xy[i].y;
+            to_next.z[i] = next.z[i] - here.z[i];
+        }
+        make_spokes(face, normal[corner], to_previous, to_next, spokes);
+    }
+};
+
+CW2_EVERY_CPU void compute(FaceBatch& batch, SpokeLanes* at_corner) {
+    batch.face.compute();
+    for (std::size_t k = 0; k < 3; ++k) batch.compute_at(k, at_corner[k]);
+}
+
 /// What spokes are made of.
 struct CornerLanes {
     FaceLanes face;
@@ -128,7 +184,9 @@ struct CornerLanes {
 
     void load(std::size_t i, const SourceScene& scene, const FramedTriangles& triangles,
               const Slot& slot) {
-        face.load(i, scene, triangles, slot.face);
+        for (std::size_t k = 0; k < 3; ++k)
+            face.set(i, k, scene,
+                     triangles.vertices[triangles.indices[3 * std::size_t{slot.face} + k]].corner);
         corner[i] = slot.corner - 3 * slot.face;
         normal.set(i, scene.normals[triangles.vertices[slot.own].corner.normal]);
     }
@@ -153,20 +211,7 @@ struct CornerLanes {
     CW2_INLINE void compute(SpokeLanes& spokes) {
         face.compute();
         compute_edges();
-        flatten(face.s, normal, spokes.s);
-        flatten(face.t, normal, spokes.t);
-        flatten(to_previous, normal, to_previous);
-        flatten(to_next, normal, to_next);
-        for (std::size_t i = 0; i < kLanes; ++i) {
-            const float cosine = to_previous.x[i] * to_next.x[i] + to_previous.y[i] * to_next.y[i] +
-                                 to_previous.z[i] * to_next.z[i];
-            const float angle = arc_cosine(cosine > 1.0f ? 1.0f : cosine < -1.0f ? -1.0f : cosine);
-            spokes.weighted_s.x[i] = angle * spokes.s.x[i];
-            spokes.weighted_s.y[i] = angle * spokes.s.y[i];
-            spokes.weighted_s.z[i] = angle * spokes.s.z[i];
-            spokes.preserving[i] = face.preserving[i];
-            spokes.usable[i] = face.usable[i];
-        }
+        make_spokes(face, normal, to_previous, to_next, spokes);
     }
 };
 
@@ -175,6 +220,14 @@ CW2_EVERY_CPU void compute(CornerLanes& corners, SpokeLanes& spokes) {
 }
 
 }  // namespace
+
+void FaceSpokes::make(const SourceScene& scene, const FramedTriangles& triangles,
+                      std::size_t first_face, std::size_t count) {
+    FaceBatch batch;
+    for (std::size_t i = 0; i < count; ++i)
+        degenerate_[i] = batch.load(i, scene, triangles, first_face + i);
+    compute(batch, at_corner_);
+}
 
 void Spokes::make(const SourceScene& scene, const FramedTriangles& triangles,
                   std::span<const Slot> slots) {

@@ -4,7 +4,10 @@
 // left where directions cancel (the pole of a fan), hang on single roundings.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
@@ -36,6 +39,22 @@ struct SpokeLanes {
     std::uint32_t usable[kLanes];      ///< 1 or 0
 };
 
+/// Up to kLanes successive faces, seen from each of their corners; see Spokes.
+class FaceSpokes {
+ public:
+    void make(const SourceScene& scene, const FramedTriangles& triangles, std::size_t first_face,
+              std::size_t count);
+
+    /// By face.
+    const SpokeLanes& at_corner(std::size_t corner) const { return at_corner_[corner]; }
+    /// Two corners of the face are at one position.
+    bool is_degenerate(std::size_t face) const { return degenerate_[face]; }
+
+ private:
+    SpokeLanes at_corner_[3];
+    bool degenerate_[kLanes];
+};
+
 /// Faces seen from one of their corners each.
 class Spokes {
  public:
@@ -54,11 +73,21 @@ class Spokes {
     }
     /// The UVs span an area: the face has directions and a winding of its own.
     bool usable(std::size_t i) const { return lanes(i).usable[i % kLanes] != 0; }
-
- private:
+    /// Where spoke i is lane i % kLanes.
     const SpokeLanes& lanes(std::size_t i) const { return lanes_[i / kLanes]; }
 
+ private:
     std::vector<SpokeLanes> lanes_;
 };
+
+inline bool is_unit(const glm::vec3& v) {
+    return std::abs(glm::dot(v, v) - 1.0f) < 1e-3f;
+}
+
+/// v in unit length, or v itself where it is too short to have a direction.
+inline glm::vec3 unit_or_zero(const glm::vec3& v) {
+    const float squared = glm::dot(v, v);
+    return squared > 0.0f ? (1.0f / std::sqrt(squared)) * v : v;
+}
 
 }  // namespace bake

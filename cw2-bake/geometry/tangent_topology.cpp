@@ -5,8 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 
 #include "common/every_cpu.h"
 
@@ -45,7 +43,7 @@ std::vector<VertexRange> ranges_of_blocks(std::span<const std::uint32_t> indices
 /// Each task lists the corners of its own range of vertices, and reads all blocks of corners where
 /// one may be: so the lists are ascending, and no task waits for another's counts but at the one
 /// barrier.
-CornerLists list_corners(const FramedTriangles& triangles) {
+CornerLists list_corners(const FramedTriangles& triangles, std::span<const std::uint8_t> wanted) {
     const auto vertex_count = static_cast<std::uint32_t>(triangles.vertices.size());
     const std::size_t tasks =
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -63,7 +61,7 @@ CornerLists list_corners(const FramedTriangles& triangles) {
                 std::min<std::size_t>(first + kBlockCorners, triangles.indices.size()));
             for (std::uint32_t c = first; c < end; ++c) {
                 const std::uint32_t vertex = triangles.indices[c];
-                if (vertex - begin < size) visit(vertex, c);
+                if (vertex - begin < size && wanted[vertex]) visit(vertex, c);
             }
         }
     };
@@ -85,7 +83,7 @@ CornerLists list_corners(const FramedTriangles& triangles) {
         totals[task + 1] = total;
     });
     for (std::size_t task = 0; task < tasks; ++task) totals[task + 1] += totals[task];
-    lists.corner.resize(triangles.indices.size());
+    lists.corner.resize(totals.back());
     tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
         std::uint32_t start = totals[task];
         for (std::uint32_t v = first_vertex(task); v < first_vertex(task + 1); ++v)
@@ -113,12 +111,6 @@ void CornerSlots::assign(const FramedTriangles& triangles, const CornerLists& li
         const auto corners = lists.at(of_vertices[i]);
         add(triangles, corners, first);
         first += static_cast<std::uint32_t>(corners.size());
-    }
-    leaving.resize(count + kFewSlots);
-    arriving.resize(count + kFewSlots);
-    for (std::size_t i = 0; i < count; ++i) {
-        leaving[i] = static_cast<std::uint16_t>(slots[i].next);
-        arriving[i] = static_cast<std::uint16_t>(slots[i].previous);
     }
 }
 
@@ -203,45 +195,6 @@ void SlotLinks::link(const CornerSlots& slots, const VertexSlots& vertex) {
             ++arriving;
         }
     }
-}
-
-CW2_EVERY_CPU bool hang_together(const CornerSlots& all, std::uint32_t first, std::uint32_t count) {
-    // Half a vertex tells which faces may be neighbours: bit i of candidates[j], whether j
-    // arrives from where i leaves to.
-    using Few = std::uint16_t __attribute__((vector_size(2 * kFewSlots)));
-    Few from;
-    std::memcpy(&from, &all.arriving[first], sizeof(from));
-    Few candidates{};
-    Few bit = Few{} + 1;
-    for (std::size_t i = 0; i < count; ++i) {
-        candidates |= (from == Few{} + all.leaving[first + i]) & bit;
-        bit += bit;
-    }
-    const Slot* const slots = &all.slots[first];
-    constexpr std::size_t kNobody = kFewSlots;
-    std::uint8_t next[kFewSlots + 1];
-    std::fill(std::begin(next), std::end(next), kNobody);
-    std::uint32_t doubts = 0;
-    std::uint32_t ends = 0;
-    std::size_t start = 0;
-    for (std::size_t j = 0; j < count; ++j) {
-        const std::uint32_t matches = candidates[j];
-        const auto i = static_cast<std::size_t>(std::countr_zero(matches | 1u << kNobody));
-        const bool is_end = matches == 0;
-        const std::uint32_t from_j = slots[j].previous;
-        const std::uint32_t to_j = is_end ? from_j : slots[i].next;
-        doubts |= (matches & (matches - 1)) | (from_j ^ to_j);
-        next[i] = static_cast<std::uint8_t>(j);
-        ends += is_end;
-        start = is_end ? j : start;
-    }
-    if (doubts != 0 || ends > 1) return false;
-    std::size_t at = start;
-    for (std::size_t step = 1; step < count; ++step) {
-        at = next[at];
-        if (at == start || at == kNobody) return false;
-    }
-    return ends == 1 || next[at] == start;
 }
 
 }  // namespace bake

@@ -12,7 +12,6 @@
 namespace bake {
 
 inline constexpr std::uint32_t kNoSlot = 0xFFFF'FFFF;
-inline constexpr std::uint32_t kFewSlots = 8;
 
 /// The corners at each vertex: those of vertex v, ascending, are corner[first[v]] ..
 /// corner[first[v + 1]].
@@ -25,7 +24,8 @@ struct CornerLists {
     }
 };
 
-CornerLists list_corners(const FramedTriangles& triangles);
+/// Of the vertices of which `wanted` holds a 1, not a 0; the others' are empty.
+CornerLists list_corners(const FramedTriangles& triangles, std::span<const std::uint8_t> wanted);
 
 /// A corner, and what its face has to do with others there.
 struct Slot {
@@ -48,9 +48,6 @@ struct VertexSlots {
 struct CornerSlots {
     std::vector<VertexSlots> vertices;
     RawVector<Slot> slots;
-    /// Low halves of each slot's next (previous) vertex; kFewSlots more than there are slots.
-    RawVector<std::uint16_t> leaving;
-    RawVector<std::uint16_t> arriving;
 
     /// Takes these vertices, which all have corners, instead of those it has.
     void assign(const FramedTriangles& triangles, const CornerLists& lists,
@@ -100,9 +97,5 @@ class SlotLinks {
     std::vector<Edge> leaving_;
     std::vector<Edge> arriving_;
 };
-
-/// Whether `count` faces, at most kFewSlots, at a vertex all hang together, and no edge has more
-/// than two of them. May answer false where they do.
-bool hang_together(const CornerSlots& slots, std::uint32_t first, std::uint32_t count);
 
 }  // namespace bake

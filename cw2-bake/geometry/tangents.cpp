@@ -11,6 +11,8 @@
 #include <span>
 #include <utility>
 
+#include "cw2-bake/geometry/fan.h"
+#include "cw2-bake/geometry/plain_tangents.h"
 #include "cw2-bake/geometry/tangent_directions.h"
 #include "cw2-bake/geometry/tangent_topology.h"
 #include "cw2-bake/geometry/windings.h"
@@ -23,20 +25,10 @@ using glm::vec4;
 
 constexpr std::uint32_t kNone = 0xFFFF'FFFF;
 constexpr vec4 kUnreached{1.0f, 0.0f, 0.0f, -1.0f};
-constexpr std::uint32_t kVerticesPerBlock = 256;
+constexpr std::size_t kVerticesPerBlock = 256;
 
 std::size_t block_count(std::size_t vertices) {
     return (vertices + kVerticesPerBlock - 1) / kVerticesPerBlock;
-}
-
-bool is_unit(const vec3& v) {
-    return std::abs(glm::dot(v, v) - 1.0f) < 1e-3f;
-}
-
-/// v in unit length, or v itself where it is too short to have a direction.
-vec3 unit_or_zero(const vec3& v) {
-    const float squared = glm::dot(v, v);
-    return squared > 0.0f ? (1.0f / std::sqrt(squared)) * v : v;
 }
 
 /// Whether the angle is clearly below 90 degrees. Two directions that are both close to a third
@@ -97,32 +89,15 @@ class TangentBlock {
         vec4 tangent{0.0f};
     };
 
-    /// Sets the tangent if all its faces are shown to be one group, no two of them opposite. Else
-    /// answers false.
     bool make_plain_vertex(const VertexSlots& vertex) {
-        const std::uint32_t count = vertex.degenerate - vertex.first;
-        if (count == 0 || count > kFewSlots || !scene_.tangents.empty() || !scene_.colors.empty())
-            return false;
-        std::uint32_t usable = 0;
-        std::uint32_t preserving = 0;
-        vec3 sum{0.0f};
-        vec3 sum_s{0.0f};
-        vec3 sum_t{0.0f};
-        for (std::uint32_t slot = vertex.first; slot < vertex.degenerate; ++slot) {
-            usable += spokes_.usable(slot);
-            preserving += spokes_.preserving(slot);
-            sum += spokes_.weighted_s(slot);
-            sum_s += spokes_.s(slot);
-            sum_t += spokes_.t(slot);
-        }
-        if (usable != count || (preserving != 0 && preserving != count)) return false;
-        // Two opposite ones would leave count - 2 at most of these sums of unit vectors.
-        const float enough = std::max(static_cast<float>(count) - 1.9f, 0.0f);
-        if (glm::dot(sum_s, sum_s) < enough * enough || glm::dot(sum_t, sum_t) < enough * enough)
-            return false;
-        if (!hang_together(slots_, vertex.first, count)) return false;
-        triangles_.vertices[slots_.slots[vertex.first].own].tangent = tangent(sum, vertex.first);
-        return true;
+        if (!scene_.tangents.empty() || !scene_.colors.empty()) return false;
+        fan_.clear();
+        for (std::uint32_t i = vertex.first; i < vertex.degenerate; ++i)
+            fan_.add(spokes_.lanes(i), i % kLanes, slots_.slots[i].next, slots_.slots[i].previous,
+                     0);
+        const auto tangent = fan_.tangent();
+        if (tangent) triangles_.vertices[slots_.slots[vertex.first].own].tangent = *tangent;
+        return tangent.has_value();
     }
 
     bool is_mixed(const VertexSlots& vertex) const {
@@ -267,6 +242,7 @@ class TangentBlock {
     std::vector<std::uint32_t> group_;  // kNone if none reached it
     std::vector<vec4> tangents_;
     // Of one vertex:
+    Fan fan_;
     std::vector<Group> groups_;
     std::vector<std::uint32_t> members_;  // the slots of one group that have usable UVs
 };
@@ -289,20 +265,24 @@ void add_splits(std::vector<Rest>& rests, FramedTriangles& triangles) {
 
 void add_tangents(const SourceScene& scene, FramedTriangles& triangles, const Advance& advance) {
     if (!scene.colors.empty()) triangles.colors.resize(triangles.vertices.size());
-    const auto count = static_cast<std::uint32_t>(triangles.vertices.size());
-    std::vector<Rest> rests(block_count(count));
+    std::vector<Rest> rests;
     std::vector<Rest> rests_of_mixed;
     {
-        const CornerLists lists = list_corners(triangles);
+        const RawVector<std::uint8_t> is_left = add_plain_tangents(scene, triangles, advance);
+        std::vector<std::uint32_t> left;
+        for (std::uint32_t v = 0; v < is_left.size(); ++v)
+            if (is_left[v]) left.push_back(v);
+        const CornerLists lists = list_corners(triangles, is_left);
         tbb::enumerable_thread_specific<TangentBlock> blocks(
             [&] { return TangentBlock(scene, lists, triangles); });
+        const auto block_of = [](std::span<const std::uint32_t> vertices, std::size_t i) {
+            const std::size_t begin = i * kVerticesPerBlock;
+            return vertices.subspan(begin, std::min(kVerticesPerBlock, vertices.size() - begin));
+        };
+        rests.resize(block_count(left.size()));
         tbb::parallel_for(std::size_t{0}, rests.size(), [&](std::size_t i) {
-            std::array<std::uint32_t, kVerticesPerBlock> vertices;
-            const auto begin = static_cast<std::uint32_t>(i) * kVerticesPerBlock;
-            const std::uint32_t size = std::min(kVerticesPerBlock, count - begin);
-            std::iota(vertices.begin(), vertices.begin() + size, begin);
-            rests[i] = blocks.local().make(std::span(vertices).first(size));
-            advance(1.0 / static_cast<double>(rests.size()));
+            rests[i] = blocks.local().make(block_of(left, i));
+            advance(0.3 / static_cast<double>(rests.size()));
         });
         std::vector<std::uint32_t> mixed;
         for (const Rest& rest : rests)
@@ -310,10 +290,7 @@ void add_tangents(const SourceScene& scene, FramedTriangles& triangles, const Ad
         const Windings windings(scene, triangles, lists, mixed);
         rests_of_mixed.resize(block_count(mixed.size()));
         tbb::parallel_for(std::size_t{0}, rests_of_mixed.size(), [&](std::size_t i) {
-            const std::size_t begin = i * kVerticesPerBlock;
-            const std::size_t size = std::min<std::size_t>(kVerticesPerBlock, mixed.size() - begin);
-            rests_of_mixed[i] =
-                blocks.local().make(std::span(mixed).subspan(begin, size), &windings);
+            rests_of_mixed[i] = blocks.local().make(block_of(mixed, i), &windings);
         });
     }
     add_splits(rests, triangles);
