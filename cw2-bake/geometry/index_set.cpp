@@ -45,35 +45,41 @@ std::size_t FirstEqual::find(const std::vector<glm::vec3>& values, std::uint32_t
             if ((slot & ~index_bits) == tag && values[other] == values[index]) return other;
         }
     };
-    // The slots are too many for caches: memory is asked for some values ahead.
-    constexpr std::size_t kAhead = 16;
+    // The slots are too many for caches: memory is asked for a batch ahead.
+    constexpr std::size_t kBatch = 32;
     struct Waiting {
         std::uint64_t hashed;
         std::uint32_t index;
     };
-    std::array<Waiting, kAhead> waiting;
-    std::size_t met = 0;
+    std::array<Waiting, kBatch + 1> waiting;  // one more is written and not kept
     std::size_t differ = 0;
-    const auto settle = [&](const Waiting& one) {
-        first_[one.index] = find_or_insert(one.hashed, one.index);
-        differ += first_[one.index] == one.index;
+    const auto settle = [&](std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i)
+            __builtin_prefetch(&slots[place_of(waiting[i].hashed)]);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint32_t index = waiting[i].index;
+            first_[index] = find_or_insert(waiting[i].hashed, index);
+            differ += first_[index] == index;
+        }
     };
+    std::size_t kept = 0;
     const auto count = static_cast<std::uint32_t>(values.size());
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint64_t hashed = hash(values[i]);
-        if (parts > 1 && part_of(hashed, parts) != part) continue;
-        Waiting& place = waiting[met % kAhead];
-        if (met++ >= kAhead) settle(place);
-        place = {hashed, i};
-        __builtin_prefetch(&slots[place_of(hashed)]);
+        // Without a branch on what no processor foresees.
+        waiting[kept] = {hashed, i};
+        kept += part_of(hashed, parts) == part;
+        if (kept < kBatch) continue;
+        settle(kept);
+        kept = 0;
     }
-    for (std::size_t i = met - std::min(met, kAhead); i < met; ++i) settle(waiting[i % kAhead]);
+    settle(kept);
     return differ;
 }
 
 /// Values of one part of the hashes each are told apart by one task.
 FirstEqual::FirstEqual(const std::vector<glm::vec3>& values) : first_(values.size()) {
-    constexpr std::size_t kWorthATask = 1 << 17;
+    constexpr std::size_t kWorthATask = 1 << 15;
     const auto parts = static_cast<std::uint32_t>(std::clamp<std::size_t>(
         values.size() / kWorthATask, 1,
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
