@@ -83,7 +83,10 @@ RawVector<std::uint8_t> add_plain_tangents(const SourceScene& scene, FramedTrian
     RawVector<std::uint8_t> left(triangles.vertices.size());
     const bool all_left = !scene.tangents.empty() || !scene.colors.empty();
     std::ranges::fill(left, all_left ? 1 : 0);
-    if (all_left) return left;
+    if (all_left) {
+        advance(kPlainShare);
+        return left;
+    }
 
     // Few blocks, since what two of them share is left; but small ones, for the caches.
     const std::size_t threads =
@@ -105,7 +108,7 @@ RawVector<std::uint8_t> add_plain_tangents(const SourceScene& scene, FramedTrian
     tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
         makers.local().make(begin_of(block), begin_of(block + 1), end_vertex[block],
                             end_vertex[block + 1]);
-        advance(0.7 / static_cast<double>(blocks));
+        advance(kPlainShare / static_cast<double>(blocks));
     });
     return left;
 }

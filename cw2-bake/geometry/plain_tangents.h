@@ -10,6 +10,9 @@
 
 namespace bake {
 
+/// How much of the time that tangents take this does.
+inline constexpr double kPlainShare = 0.7;
+
 /// Sets the tangents of the vertices of which one pass over the faces shows that all of theirs are
 /// one of MikkTSpace's groups, no two opposite. Returns, by vertex, whether it is left as it was: 1
 /// or 0.

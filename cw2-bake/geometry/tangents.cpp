@@ -4,10 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <glm/geometric.hpp>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -89,6 +86,7 @@ class TangentBlock {
         vec4 tangent{0.0f};
     };
 
+    /// Sets the tangent, if all faces are one group. Else answers false.
     bool make_plain_vertex(const VertexSlots& vertex) {
         if (!scene_.tangents.empty() || !scene_.colors.empty()) return false;
         fan_.clear();
@@ -282,7 +280,7 @@ void add_tangents(const SourceScene& scene, FramedTriangles& triangles, const Ad
         rests.resize(block_count(left.size()));
         tbb::parallel_for(std::size_t{0}, rests.size(), [&](std::size_t i) {
             rests[i] = blocks.local().make(block_of(left, i));
-            advance(0.3 / static_cast<double>(rests.size()));
+            advance((1.0 - kPlainShare) / static_cast<double>(rests.size()));
         });
         std::vector<std::uint32_t> mixed;
         for (const Rest& rest : rests)
