@@ -40,7 +40,7 @@ CW2_INLINE Four paired_products(const Row& a, const Row& b) {
 #endif
 }
 
-CW2_INLINE void add(std::array<int32_t, 4>& sum, const Four& part) {
+CW2_INLINE void add(Sum& sum, const Four& part) {
     UnsignedFour lanes;
     std::memcpy(&lanes, &sum, sizeof lanes);
     lanes += reinterpret_cast<UnsignedFour>(part);
@@ -49,7 +49,8 @@ CW2_INLINE void add(std::array<int32_t, 4>& sum, const Four& part) {
 
 template <bool kHasUvs>
 CW2_INLINE void sum_all(std::span<const std::uint16_t> indices, const Place* places,
-                        const SurfaceModel& model, Surface* surfaces) {
+                        const SurfaceModel& model, Sum* sums) {
+    constexpr std::size_t kStride = kHasUvs ? 2 : 1;
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         const std::size_t corners[] = {indices[i], indices[i + 1], indices[i + 2]};
         const Place& first = places[corners[0]];
@@ -61,7 +62,7 @@ CW2_INLINE void sum_all(std::span<const std::uint16_t> indices, const Place* pla
         const Row left = __builtin_shufflevector(e, minus_e, 2, 9, 0, 10, 1, 8, 3, 3);
         const Row right = __builtin_shufflevector(minus_f, minus_f, 1, 2, 2, 0, 0, 1, 3, 3);
         const Four normal = paired_products(left, right) >> model.normal_shift;
-        for (const std::size_t corner : corners) add(surfaces[corner].normal, normal);
+        for (const std::size_t corner : corners) add(sums[kStride * corner], normal);
         if constexpr (kHasUvs) {
             // The edges' combination of no v, and what it has of u: e f.v - f e.v, the other way.
             const Row edges = __builtin_shufflevector(e, minus_f, 0, 8, 1, 9, 2, 10, 3, 11);
@@ -71,13 +72,14 @@ CW2_INLINE void sum_all(std::span<const std::uint16_t> indices, const Place* pla
             const Four is_negative = __builtin_shufflevector(along_u, along_u, 3, 3, 3, 3) >> 31;
             const Four sign = is_negative & Four{-1, -1, -1, 0};
             const Four tangent = (along_u >> model.tangent_shift ^ sign) - sign;
-            for (const std::size_t corner : corners) add(surfaces[corner].tangent, tangent);
+            for (const std::size_t corner : corners) add(sums[kStride * corner + 1], tangent);
         }
     }
 }
 
-using Lanes = int32_t __attribute__((vector_size(4 * kFrameLanes)));
-using Floats = float __attribute__((vector_size(4 * kFrameLanes)));
+constexpr std::size_t kLanes = 8;
+using Lanes = int32_t __attribute__((vector_size(4 * kLanes)));
+using Floats = float __attribute__((vector_size(4 * kLanes)));
 struct Vectors {
     Lanes x, y, z;
 };
@@ -155,7 +157,7 @@ CW2_INLINE Lanes inverse(const Lanes& number) {
 }
 
 CW2_INLINE Lanes wrapped_product(const Lanes& a, const Lanes& b) {
-    using Unsigned = std::uint32_t __attribute__((vector_size(4 * kFrameLanes)));
+    using Unsigned = std::uint32_t __attribute__((vector_size(4 * kLanes)));
     return reinterpret_cast<Lanes>(reinterpret_cast<Unsigned>(a) * reinterpret_cast<Unsigned>(b));
 }
 
@@ -174,7 +176,11 @@ struct VectorsAndNumbers {
 
 /// The first numbers of all lanes, the second, ... Registers' halves are shuffled each by itself,
 /// which is faster.
-CW2_INLINE VectorsAndNumbers by_number(const std::array<Four, kFrameLanes>& in) {
+template <std::size_t kStride>
+CW2_INLINE VectorsAndNumbers by_number(const Sum* sums) {
+    std::array<Four, kLanes> in;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+        std::memcpy(&in[lane], &sums[kStride * lane], sizeof(Four));
     std::array<Lanes, 4> pairs;
     for (std::size_t k = 0; k < 4; ++k)
         pairs[k] = __builtin_shufflevector(in[k], in[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
@@ -188,31 +194,43 @@ CW2_INLINE VectorsAndNumbers by_number(const std::array<Four, kFrameLanes>& in) 
             __builtin_shufflevector(zw0, zw2, 2, 3, 10, 11, 6, 7, 14, 15)};
 }
 
-/// Quaternions: the largest component's number, the angles of the other three in their order, and
-/// -1 where left-handed, else 0.
-struct Quaternions {
-    Lanes largest;
-    std::array<Lanes, 3> angles;
-    Lanes is_left;
+/// Frames on the way from surfaces to quaternions.
+struct Frames {
+    Vectors n, t;
+    Lanes is_left;                ///< -1 where left-handed, else 0
+    Lanes largest;                ///< the number of the quaternion's largest component
+    Lanes best;                   ///< four times its square
+    std::array<Lanes, 3> others;  ///< four times it times the others, in their order
+    std::array<Lanes, 3> angles;  ///< of the others
 };
 
-CW2_INLINE Quaternions quaternions_of(const Surface* surfaces) {
-    std::array<Four, kFrameLanes> normals;
-    std::array<Four, kFrameLanes> tangents;
-    for (std::size_t lane = 0; lane < kFrameLanes; ++lane) {
-        std::memcpy(&normals[lane], &surfaces[lane].normal, sizeof(Four));
-        std::memcpy(&tangents[lane], &surfaces[lane].tangent, sizeof(Four));
+template <bool kHasUvs>
+CW2_INLINE void load(const Sum* sums, Frames& frames) {
+    constexpr std::size_t kStride = kHasUvs ? 2 : 1;
+    const VectorsAndNumbers normal = by_number<kStride>(sums);
+    frames.n = shortened(normal.xyz, size(normal.xyz));
+    if constexpr (kHasUvs) {
+        const VectorsAndNumbers tangent = by_number<kStride>(sums + 1);
+        const Lanes tangent_size = size(tangent.xyz);
+        frames.t = shortened(tangent.xyz, tangent_size);
+        frames.t.x = tangent_size == 0 ? Lanes{} + kOne : frames.t.x;
+        frames.is_left = tangent.w < 0;
+    } else {
+        frames.t = {Lanes{} + kOne, Lanes{}, Lanes{}};
+        frames.is_left = Lanes{};
     }
-    const Vectors normal = by_number(normals).xyz;
-    auto [t, areas] = by_number(tangents);
-    const Vectors n = nearly_unit(shortened(normal, size(normal)));
-    const Lanes tangent_size = size(t);
-    t = shortened(t, tangent_size);
-    t.x = tangent_size == 0 ? Lanes{} + kOne : t.x;
-    const Lanes along = dot(t, n) >> kBits;
-    t = nearly_unit(difference(t, shifted(product(n, along), Lanes{} + kBits)));
+}
+
+CW2_INLINE void make_orthogonal(Frames& frames) {
+    const Lanes along = dot(frames.t, frames.n) >> kBits;
+    frames.t = difference(frames.t, shifted(product(frames.n, along), Lanes{} + kBits));
+}
+
+/// Every row of 4 q q^T is a multiple of q, see frame_rotation.h; this takes the largest one.
+CW2_INLINE void choose_row(Frames& frames) {
+    const Vectors& n = frames.n;
+    const Vectors& t = frames.t;
     const Vectors b = shifted(cross(n, t), Lanes{} + kBits);
-    // Every row of 4 q q^T is a multiple of q, see frame_rotation.h.
     const Lanes xy = t.y + b.x, xz = t.z + n.x, yz = b.z + n.y;
     const Lanes xw = b.z - n.y, yw = n.x - t.z, zw = t.y - b.x;
     Lanes best = kOne + t.x - b.y - n.z;
@@ -227,17 +245,65 @@ CW2_INLINE Quaternions quaternions_of(const Surface* surfaces) {
     choose(1, kOne - t.x + b.y - n.z, {xy, yz, yw});
     choose(2, kOne - t.x - b.y + n.z, {xz, yz, zw});
     choose(3, kOne + t.x + b.y + n.z, {xw, yw, zw});
-    const Lanes factor = inverse(best);
-    Quaternions result{largest, {}, areas < 0};
+    frames.best = best;
+    frames.largest = largest;
+    frames.others = others;
+}
+
+CW2_INLINE void set_angles(Frames& frames) {
+    const Lanes factor = inverse(frames.best);
     // Where next to nothing is left of a tangent it may be along the normal; then this is any
     // number.
     for (std::size_t k = 0; k < 3; ++k)
-        result.angles[k] = angle_of(wrapped_product(others[k], factor) >> 16);
-    return result;
+        frames.angles[k] = angle_of(wrapped_product(frames.others[k], factor) >> 16);
+}
+
+using Groups = std::array<Frames, kFrameLanes / kLanes>;
+
+/// Step by step for all groups: a step waits for the one before, and another group's need not.
+template <bool kHasUvs>
+CW2_INLINE void set_quaternions(const Sum* sums, Groups& groups) {
+    for (Frames& each : groups) {
+        load<kHasUvs>(sums, each);
+        sums += (kHasUvs ? 2 : 1) * kLanes;
+    }
+    for (Frames& each : groups) each.n = nearly_unit(each.n);
+    for (Frames& each : groups) make_orthogonal(each);
+    for (Frames& each : groups) each.t = nearly_unit(each.t);
+    for (Frames& each : groups) choose_row(each);
+    for (Frames& each : groups) set_angles(each);
 }
 
 CW2_INLINE Row narrowed(const Lanes& lanes) {
     return __builtin_convertvector(lanes, Row);
+}
+
+template <bool kHasUvs>
+CW2_INLINE void set_words(const Sum* sums, std::array<Words, 3>& words) {
+    Groups groups;
+    set_quaternions<kHasUvs>(sums, groups);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        const Frames& frames = groups[i];
+        const Lanes bits[] = {frames.is_left, frames.largest, frames.largest >> 1};
+        for (std::size_t k = 0; k < 3; ++k)
+            words[k][i] = narrowed(frames.angles[k] + 16'383 + (bits[k] << 15));
+    }
+}
+
+template <bool kHasUvs>
+CW2_INLINE void set_codes(const Sum* sums, std::array<std::uint32_t, kFrameLanes>& codes) {
+    Groups groups;
+    set_quaternions<kHasUvs>(sums, groups);
+    using Unsigned = std::uint32_t __attribute__((vector_size(4 * kLanes)));
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        const Frames& frames = groups[i];
+        Unsigned code = reinterpret_cast<Unsigned>(frames.largest - 4 * frames.is_left);
+        for (std::size_t k = 3; k-- > 0;) {
+            const Lanes digit = ((frames.angles[k] * 405 + kOne / 2) >> kBits) + 405;
+            code = code * 811 + reinterpret_cast<Unsigned>(digit);
+        }
+        std::memcpy(&codes[i * kLanes], &code, sizeof code);
+    }
 }
 
 /// The largest magnitude of what triangles add, to the number of bits that have to go so that 24
@@ -250,12 +316,12 @@ int fitting_shift(uint64_t size) {
 }  // namespace
 
 CW2_EVERY_CPU void sum_surfaces(std::span<const std::uint16_t> indices, const Place* places,
-                                const SurfaceModel& model, std::span<Surface> surfaces) {
-    std::ranges::fill(surfaces, Surface{});
+                                const SurfaceModel& model, std::span<Sum> sums) {
+    std::ranges::fill(sums, Sum{});
     if (model.has_uvs)
-        sum_all<true>(indices, places, model, surfaces.data());
+        sum_all<true>(indices, places, model, sums.data());
     else
-        sum_all<false>(indices, places, model, surfaces.data());
+        sum_all<false>(indices, places, model, sums.data());
 }
 
 SurfaceModel fitting_model(std::span<const std::uint16_t> indices, const Place* places,
@@ -277,22 +343,19 @@ SurfaceModel fitting_model(std::span<const std::uint16_t> indices, const Place* 
     return {has_uvs, fitting_shift(normal), fitting_shift(tangent)};
 }
 
-CW2_EVERY_CPU void expect_quat48(const Surface* surfaces, std::array<Row, 3>& words) {
-    const Quaternions q = quaternions_of(surfaces);
-    const Lanes bits[] = {q.is_left, q.largest, q.largest >> 1};
-    for (std::size_t k = 0; k < 3; ++k) words[k] = narrowed(q.angles[k] + 16'383 + (bits[k] << 15));
+CW2_EVERY_CPU void expect_quat48(const Sum* sums, bool has_uvs, std::array<Words, 3>& words) {
+    if (has_uvs)
+        set_words<true>(sums, words);
+    else
+        set_words<false>(sums, words);
 }
 
-CW2_EVERY_CPU void expect_quat32(const Surface* surfaces,
+CW2_EVERY_CPU void expect_quat32(const Sum* sums, bool has_uvs,
                                  std::array<std::uint32_t, kFrameLanes>& codes) {
-    const Quaternions q = quaternions_of(surfaces);
-    using Unsigned = std::uint32_t __attribute__((vector_size(4 * kFrameLanes)));
-    Unsigned code = reinterpret_cast<Unsigned>(q.largest - 4 * q.is_left);
-    for (std::size_t k = 3; k-- > 0;) {
-        const Lanes digit = ((q.angles[k] * 405 + kOne / 2) >> kBits) + 405;
-        code = code * 811 + reinterpret_cast<Unsigned>(digit);
-    }
-    std::memcpy(&codes, &code, sizeof code);
+    if (has_uvs)
+        set_codes<true>(sums, codes);
+    else
+        set_codes<false>(sums, codes);
 }
 
 }  // namespace mesh_format

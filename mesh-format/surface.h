@@ -23,31 +23,35 @@ struct SurfaceModel {
 };
 inline constexpr int kMaxSurfaceShift = 15;
 
-/// Of a vertex, the sums over its triangles, modulo 2^32.
-struct Surface {
-    /// As long as twice the areas; the fourth number has no meaning.
-    std::array<std::int32_t, 4> normal;
-    /// Along u, as long as twice the areas in UVs times lengths along u; the fourth number is those
-    /// areas, below 0 for a left-handed frame.
-    std::array<std::int32_t, 4> tangent;
-};
+/// Modulo 2^32, over the triangles of a vertex. Of normals: as long as twice the areas; the fourth
+/// number has no meaning. Of tangents: along u, as long as twice the areas in UVs times lengths
+/// along u; the fourth number is those areas, below 0 for a left-handed frame.
+using Sum = std::array<std::int32_t, 4>;
 
-/// Sets the surfaces of all vertices; what is behind those becomes 0. Every index is below their
-/// number. Differences of places are modulo 2^16: triangles larger than half of that tell nothing.
+/// Of normals, and if there are UVs of tangents.
+constexpr std::size_t sums_of_vertex(const SurfaceModel& model) {
+    return model.has_uvs ? 2 : 1;
+}
+
+/// Sets sums_of_vertex() for each vertex; what is behind those becomes 0. Every index is below
+/// their number. Differences of places are modulo 2^16: triangles larger than half of that tell
+/// nothing.
 void sum_surfaces(std::span<const std::uint16_t> indices, const Place* places,
-                  const SurfaceModel& model, std::span<Surface> surfaces);
+                  const SurfaceModel& model, std::span<Sum> sums);
 
 /// The least shifts with which sums over a hundred of the largest triangles are below 2^31.
 SurfaceModel fitting_model(std::span<const std::uint16_t> indices, const Place* places,
                            bool has_uvs);
 
 /// How many frames are expected at once.
-inline constexpr std::size_t kFrameLanes = 8;
+inline constexpr std::size_t kFrameLanes = 32;
+/// A number of each.
+using Words = std::array<Row, kFrameLanes / kRowNumbers>;
 
-/// The frames of as many surfaces: the normal is that of the sum, the tangent its tangent (the x
-/// axis if that is 0), made orthogonal to the normal. In quat48, the first words of all, the second
-/// and the third; in quat32, the codes.
-void expect_quat48(const Surface* surfaces, std::array<Row, 3>& words);
-void expect_quat32(const Surface* surfaces, std::array<std::uint32_t, kFrameLanes>& codes);
+/// The frames that the sums of as many vertices suggest: the normal is their normal, the tangent
+/// theirs, or the x axis if that is 0 or there are none, made orthogonal to the normal. In quat48,
+/// the first words of all, the second and the third; in quat32, the codes.
+void expect_quat48(const Sum* sums, bool has_uvs, std::array<Words, 3>& words);
+void expect_quat32(const Sum* sums, bool has_uvs, std::array<std::uint32_t, kFrameLanes>& codes);
 
 }  // namespace mesh_format

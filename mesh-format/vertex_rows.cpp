@@ -14,6 +14,14 @@ namespace {
 using Plane = std::uint8_t __attribute__((vector_size(16)));
 
 constexpr std::size_t kBlock = 16;  // vertices
+constexpr std::size_t kHalves = kBlock / kRowNumbers;
+
+constexpr std::size_t stride_of(FrameForm form) {
+    return vertex_layout({PositionForm::quantised, form, UvForm::quantised, ColorForm::none})
+        .stride;
+}
+constexpr std::size_t kStride48 = stride_of(FrameForm::quat48);
+constexpr std::size_t kStride32 = stride_of(FrameForm::quat32);
 
 /// 0, 1, 2, 3 to 0, -1, 1, -2.
 Row unzigzag(Row row) {
@@ -44,7 +52,7 @@ class Planes {
     }
 
     /// The differences of a block's vertices in a number: of the first eight, and of the others.
-    std::array<Row, 2> differences(const NumberPlanes& at, std::size_t first) const {
+    std::array<Row, kHalves> differences(const NumberPlanes& at, std::size_t first) const {
         const Plane low = bytes(at.low, first);
         const Plane high = bytes(at.high, first);
         const Plane first_half = __builtin_shufflevector(low, high, 0, 16, 1, 17, 2, 18, 3, 19, 4,
@@ -61,7 +69,7 @@ class Planes {
                                  std::size_t first) const {
         std::array<Row, kRowNumbers> halves[2]{};
         for (std::size_t k = 0; k < kNumbers; ++k) {
-            const std::array<Row, 2> both = differences(numbers[k], first);
+            const std::array<Row, kHalves> both = differences(numbers[k], first);
             for (std::size_t half = 0; half < 2; ++half) halves[half][k] = both[half];
         }
         std::array<Row, kBlock> result;
@@ -105,21 +113,12 @@ constexpr std::array<NumberPlanes, kRowNumbers> kQuat48Planes{
     {{0, 3}, {1, 4}, {2, 5}, {10, 13}, {11, 14}, {12, 15}, {6, 8}, {7, 9}}};
 
 /// What the codes of a block's frames differ by.
-void read_frames(const Planes& planes, std::size_t first,
-                 std::array<std::array<Row, 3>, 2>& words) {
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::array<Row, 2> both =
-            planes.differences({kFirstFramePlane + k, kFirstFramePlane + 3 + k}, first);
-        for (std::size_t half = 0; half < 2; ++half) words[half][k] = both[half];
-    }
-}
-void read_frames(const Planes& planes, std::size_t first,
-                 std::array<std::uint32_t, kBlock>& codes) {
+void read_codes(const Planes& planes, std::size_t first, std::array<std::uint32_t, kBlock>& codes) {
     const Plane bytes = planes.bytes(kFirstFramePlane, first);
     const Plane tops = bytes >> 1 ^ -(bytes & 1);
     std::array<std::array<std::uint16_t, kBlock>, 3> digits;
     for (std::size_t k = 0; k < 3; ++k) {
-        const std::array<Row, 2> both =
+        const std::array<Row, kHalves> both =
             planes.differences({kFirstFramePlane + 1 + k, kFirstFramePlane + 4 + k}, first);
         std::memcpy(&digits[k], &both, sizeof both);
     }
@@ -127,13 +126,14 @@ void read_frames(const Planes& planes, std::size_t first,
         codes[i] = code_difference({{digits[0][i], digits[1][i], digits[2][i]}, tops[i]});
 }
 
-/// Three rows of eight words to eight frames.
-std::array<std::uint64_t, kFrameLanes> by_frame(const std::array<Row, 3>& words) {
-    std::array<Row, kRowNumbers> rows{words[0], words[1], words[2]};
+/// Eight frames of three words.
+std::array<std::uint64_t, kRowNumbers> by_frame(const Row& first, const Row& second,
+                                                const Row& third) {
+    std::array<Row, kRowNumbers> rows{first, second, third};
     transpose(rows);
-    std::array<std::uint64_t, kFrameLanes> frames;
-    for (std::size_t lane = 0; lane < kFrameLanes; ++lane)
-        std::memcpy(&frames[lane], &rows[lane], sizeof frames[lane]);
+    std::array<std::uint64_t, kRowNumbers> frames;
+    for (std::size_t k = 0; k < frames.size(); ++k)
+        std::memcpy(&frames[k], &rows[k], sizeof frames[k]);
     return frames;
 }
 
@@ -148,55 +148,79 @@ void put(const Place& place, const Frame& frame, std::byte* out) {
     std::memcpy(out + 6 + kFrameBytes, &uv, sizeof uv);
 }
 
-void decode_quat32(const Planes& planes, std::span<const Neighbours> neighbours,
-                   const Place* places, std::byte* out, Scratch& scratch) {
+void decode_frames32(const Planes& planes, std::span<const Neighbours> neighbours,
+                     const Place* places, std::byte* out, Scratch& scratch) {
     auto* const codes = scratch.take<std::uint32_t>(neighbours.size());
     for (std::size_t first = 0; first < neighbours.size(); first += kBlock) {
         std::array<std::uint32_t, kBlock> differences;
-        read_frames(planes, first, differences);
+        read_codes(planes, first, differences);
         const std::size_t size = std::min(kBlock, neighbours.size() - first);
         for (std::size_t k = 0; k < size; ++k) {
             const std::size_t i = first + k;
             const auto [a, b, c, unused] = neighbours[i];
             codes[i] = differences[k] + (i > 0 ? codes[a] - codes[c] + codes[b] : 0);
-            put(places[i], codes[i], out + i * 14);
+            put(places[i], codes[i], out + i * kStride32);
         }
     }
 }
 
-template <FrameForm kForm>
-void decode_frames(const Planes& planes, const Surface* surfaces, std::size_t count,
-                   const Place* places, std::byte* out) {
-    constexpr std::size_t kStride =
-        vertex_layout({PositionForm::quantised, kForm, UvForm::quantised, ColorForm::none}).stride;
-    for (std::size_t first = 0; first < count; first += kBlock) {
-        std::array<std::array<Row, 3>, 2> words;
-        std::array<std::uint32_t, kBlock> codes;
-        if constexpr (kForm == FrameForm::quat48)
-            read_frames(planes, first, words);
-        else
-            read_frames(planes, first, codes);
-        for (std::size_t half = 0; half < 2; ++half) {
-            const std::size_t start = first + half * kFrameLanes;
-            if (start >= count) break;
-            const std::size_t size = std::min(kFrameLanes, count - start);
-            if constexpr (kForm == FrameForm::quat48) {
-                std::array<Row, 3> expected;
-                expect_quat48(surfaces + start, expected);
-                for (std::size_t k = 0; k < 3; ++k) expected[k] += words[half][k];
-                const std::array<std::uint64_t, kFrameLanes> frames = by_frame(expected);
-                for (std::size_t k = 0; k < size; ++k)
-                    put(places[start + k], frames[k], out + (start + k) * kStride);
-            } else {
-                std::array<std::uint32_t, kFrameLanes> expected;
-                expect_quat32(surfaces + start, expected);
-                for (std::size_t k = 0; k < size; ++k)
-                    put(places[start + k], expected[k] + codes[half * kFrameLanes + k],
-                        out + (start + k) * kStride);
+/// What surfaces suggest of all frames, by their sums, and what those differ by.
+class SurfaceFrames {
+ public:
+    SurfaceFrames(const Planes& planes, const SurfaceModel& model, std::span<const Sum> sums,
+                  std::span<const Place> places)
+        : planes_(planes), has_uvs_(model.has_uvs), sums_(sums), places_(places) {}
+
+    void decode_quat48(std::byte* out) const {
+        for (std::size_t first = 0; first < places_.size(); first += kFrameLanes) {
+            std::array<Words, 3> words;
+            expect_quat48(sums_at(first), has_uvs_, words);
+            for (std::size_t at = 0; at < kFrameLanes && first + at < places_.size(); at += kBlock)
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::array<Row, kHalves> differences = planes_.differences(
+                        {kFirstFramePlane + k, kFirstFramePlane + 3 + k}, first + at);
+                    for (std::size_t half = 0; half < kHalves; ++half)
+                        words[k][at / kRowNumbers + half] += differences[half];
+                }
+            const std::size_t size = std::min(kFrameLanes, places_.size() - first);
+            for (std::size_t at = 0; at < size; at += kRowNumbers) {
+                const std::size_t i = at / kRowNumbers;
+                put_all(by_frame(words[0][i], words[1][i], words[2][i]), first + at, out);
             }
         }
     }
-}
+
+    void decode_quat32(std::byte* out) const {
+        for (std::size_t first = 0; first < places_.size(); first += kFrameLanes) {
+            std::array<std::uint32_t, kFrameLanes> codes;
+            expect_quat32(sums_at(first), has_uvs_, codes);
+            for (std::size_t at = 0; at < kFrameLanes && first + at < places_.size();
+                 at += kBlock) {
+                std::array<std::uint32_t, kBlock> frames;
+                read_codes(planes_, first + at, frames);
+                for (std::size_t k = 0; k < kBlock; ++k) frames[k] += codes[at + k];
+                put_all(frames, first + at, out);
+            }
+        }
+    }
+
+ private:
+    const Sum* sums_at(std::size_t vertex) const { return &sums_[(has_uvs_ ? 2 : 1) * vertex]; }
+
+    /// The frames from vertex `first` on, but for those behind the last.
+    template <typename Frames>
+    void put_all(const Frames& frames, std::size_t first, std::byte* out) const {
+        constexpr std::size_t kStride = sizeof frames[0] == 8 ? kStride48 : kStride32;
+        const std::size_t size = std::min(frames.size(), places_.size() - first);
+        for (std::size_t k = 0; k < size; ++k)
+            put(places_[first + k], frames[k], out + (first + k) * kStride);
+    }
+
+    const Planes& planes_;
+    bool has_uvs_;
+    std::span<const Sum> sums_;
+    std::span<const Place> places_;
+};
 
 }  // namespace
 
@@ -209,13 +233,15 @@ void decode_rows(const MeshRecord& mesh, const SurfaceModel* model,
     if (is_wide && !model) return decode_whole(planes, kQuat48Planes, neighbours, vertices);
     auto* const places = scratch.take<Place>(count);
     decode_whole(planes, kPlacePlanes, neighbours, reinterpret_cast<std::byte*>(places));
-    if (!model) return decode_quat32(planes, neighbours, places, vertices, scratch);
-    const std::span surfaces(scratch.take<Surface>(count + kBlock), count + kBlock);
-    sum_surfaces(indices, places, *model, surfaces);
+    if (!model) return decode_frames32(planes, neighbours, places, vertices, scratch);
+    const std::size_t sum_count = sums_of_vertex(*model) * (count + kFrameLanes);
+    const std::span sums(scratch.take<Sum>(sum_count), sum_count);
+    sum_surfaces(indices, places, *model, sums);
+    const SurfaceFrames frames(planes, *model, sums, {places, count});
     if (is_wide)
-        decode_frames<FrameForm::quat48>(planes, surfaces.data(), count, places, vertices);
+        frames.decode_quat48(vertices);
     else
-        decode_frames<FrameForm::quat32>(planes, surfaces.data(), count, places, vertices);
+        frames.decode_quat32(vertices);
 }
 
 }  // namespace mesh_format

@@ -79,9 +79,8 @@ struct FrameCode : Numbers<std::uint32_t, 1> {
 template <typename Use>
 void for_each_part(const VertexForms& forms, Use use) {
     const VertexLayout layout = vertex_layout(forms);
-    using Words = Numbers<std::uint16_t, 3>;
     if (forms.position == PositionForm::quantised)
-        use(Words(), 0u);
+        use(Numbers<std::uint16_t, 3>(), 0u);
     else
         use(Numbers<float, 3>(), 0u);
     if (forms.uv == UvForm::quantised)
@@ -94,7 +93,7 @@ void for_each_part(const VertexForms& forms, Use use) {
     else if (forms.frame == FrameForm::quat32)
         use(FrameCode(), layout.frame_offset);
     else
-        use(Words(), layout.frame_offset);
+        use(Numbers<std::uint16_t, 3>(), layout.frame_offset);
 }
 
 /// The same part of all vertices of a mesh.
@@ -173,19 +172,21 @@ template <typename Part>
 std::vector<typename Part::Values> frames_of(std::span<const std::uint16_t> indices,
                                              std::span<const Place> places,
                                              const SurfaceModel& model) {
-    std::vector<Surface> surfaces(places.size() + kFrameLanes);
-    sum_surfaces(indices, places.data(), model, surfaces);
-    std::vector<typename Part::Values> frames(surfaces.size());
+    const std::size_t sum_count = sums_of_vertex(model);
+    std::vector<Sum> sums(sum_count * (places.size() + kFrameLanes));
+    sum_surfaces(indices, places.data(), model, sums);
+    std::vector<typename Part::Values> frames(places.size() + kFrameLanes);
     for (std::size_t i = 0; i < places.size(); i += kFrameLanes) {
         if constexpr (std::is_same_v<Part, FrameCode>) {
             std::array<std::uint32_t, kFrameLanes> codes;
-            expect_quat32(&surfaces[i], codes);
+            expect_quat32(&sums[sum_count * i], model.has_uvs, codes);
             for (std::size_t lane = 0; lane < kFrameLanes; ++lane) frames[i + lane] = {codes[lane]};
         } else if constexpr (std::is_same_v<Part, Numbers<std::uint16_t, 3>>) {
-            std::array<Row, 3> words;
-            expect_quat48(&surfaces[i], words);
+            std::array<Words, 3> words;
+            expect_quat48(&sums[sum_count * i], model.has_uvs, words);
             for (std::size_t lane = 0; lane < kFrameLanes; ++lane)
-                frames[i + lane] = {words[0][lane], words[1][lane], words[2][lane]};
+                for (std::size_t k = 0; k < 3; ++k)
+                    frames[i + lane][k] = words[k][lane / kRowNumbers][lane % kRowNumbers];
         }
     }
     frames.resize(places.size());
