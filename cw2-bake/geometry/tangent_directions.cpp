@@ -224,6 +224,7 @@ CW2_EVERY_CPU void compute(CornerLanes& corners, SpokeLanes& spokes) {
 void FaceSpokes::make(const SourceScene& scene, const FramedTriangles& triangles,
                       std::size_t first_face, std::size_t count) {
     FaceBatch batch;
+    if (count < kLanes) batch = {};
     for (std::size_t i = 0; i < count; ++i)
         degenerate_[i] = batch.load(i, scene, triangles, first_face + i);
     compute(batch, at_corner_);
