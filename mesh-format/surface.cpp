@@ -20,6 +20,7 @@ using std::uint64_t;
 
 using Four = int32_t __attribute__((vector_size(16)));
 using UnsignedFour = std::uint32_t __attribute__((vector_size(16)));
+using UnsignedEight = std::uint32_t __attribute__((vector_size(32)));
 
 /// Of two rows of signed numbers the products, each two neighbouring ones added; modulo 2^32.
 CW2_INLINE Four paired_products(const Row& a, const Row& b) {
@@ -40,41 +41,58 @@ CW2_INLINE Four paired_products(const Row& a, const Row& b) {
 #endif
 }
 
-CW2_INLINE void add(Sum& sum, const Four& part) {
-    UnsignedFour lanes;
-    std::memcpy(&lanes, &sum, sizeof lanes);
-    lanes += reinterpret_cast<UnsignedFour>(part);
-    std::memcpy(&sum, &lanes, sizeof lanes);
+/// Adds to a vertex's sums, as many as there are.
+template <typename Parts>
+CW2_INLINE void add(Sum* sums, const Parts& parts) {
+    Parts lanes;
+    std::memcpy(&lanes, sums, sizeof lanes);
+    lanes += parts;
+    std::memcpy(sums, &lanes, sizeof lanes);
+}
+
+template <bool kHasUvs>
+CW2_INLINE void add_triangle(const std::uint16_t* indices, const Place* places,
+                             const SurfaceModel& model, Sum* sums) {
+    const std::size_t corners[] = {indices[0], indices[1], indices[2]};
+    const Place& first = places[corners[0]];
+    // The edges e = second - first and f = third - first, and the other way.
+    const Row e = places[corners[1]] - first;
+    const Row minus_e = first - places[corners[1]];
+    const Row minus_f = first - places[corners[2]];
+    // cross(e, f), component by component: e.z -f.y + -e.y -f.z, ...
+    const Row left = __builtin_shufflevector(e, minus_e, 2, 9, 0, 10, 1, 8, 3, 3);
+    const Row right = __builtin_shufflevector(minus_f, minus_f, 1, 2, 2, 0, 0, 1, 3, 3);
+    const Four normal = paired_products(left, right) >> model.normal_shift;
+    if constexpr (!kHasUvs) {
+        for (const std::size_t corner : corners)
+            add(&sums[corner], reinterpret_cast<UnsignedFour>(normal));
+    } else {
+        // The edges' combination of no v, and what it has of u: e f.v - f e.v, the other way.
+        const Row edges = __builtin_shufflevector(e, minus_f, 0, 8, 1, 9, 2, 10, 3, 11);
+        const Row factors = __builtin_shufflevector(minus_f, minus_e, 4, 12, 4, 12, 4, 12, 4, 12);
+        const Four along_u = paired_products(edges, factors);
+        const Four is_negative = __builtin_shufflevector(along_u, along_u, 3, 3, 3, 3) >> 31;
+        const Four sign = is_negative & Four{-1, -1, -1, 0};
+        const Four tangent = (along_u >> model.tangent_shift ^ sign) - sign;
+        const auto both = reinterpret_cast<UnsignedEight>(
+            __builtin_shufflevector(normal, tangent, 0, 1, 2, 3, 4, 5, 6, 7));
+        for (const std::size_t corner : corners) add(&sums[2 * corner], both);
+    }
 }
 
 template <bool kHasUvs>
 CW2_INLINE void sum_all(std::span<const std::uint16_t> indices, const Place* places,
                         const SurfaceModel& model, Sum* sums) {
-    constexpr std::size_t kStride = kHasUvs ? 2 : 1;
-    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-        const std::size_t corners[] = {indices[i], indices[i + 1], indices[i + 2]};
-        const Place& first = places[corners[0]];
-        // The edges e = second - first and f = third - first, and the other way.
-        const Row e = places[corners[1]] - first;
-        const Row minus_e = first - places[corners[1]];
-        const Row minus_f = first - places[corners[2]];
-        // cross(e, f), component by component: e.z -f.y + -e.y -f.z, ...
-        const Row left = __builtin_shufflevector(e, minus_e, 2, 9, 0, 10, 1, 8, 3, 3);
-        const Row right = __builtin_shufflevector(minus_f, minus_f, 1, 2, 2, 0, 0, 1, 3, 3);
-        const Four normal = paired_products(left, right) >> model.normal_shift;
-        for (const std::size_t corner : corners) add(sums[kStride * corner], normal);
-        if constexpr (kHasUvs) {
-            // The edges' combination of no v, and what it has of u: e f.v - f e.v, the other way.
-            const Row edges = __builtin_shufflevector(e, minus_f, 0, 8, 1, 9, 2, 10, 3, 11);
-            const Row factors =
-                __builtin_shufflevector(minus_f, minus_e, 4, 12, 4, 12, 4, 12, 4, 12);
-            const Four along_u = paired_products(edges, factors);
-            const Four is_negative = __builtin_shufflevector(along_u, along_u, 3, 3, 3, 3) >> 31;
-            const Four sign = is_negative & Four{-1, -1, -1, 0};
-            const Four tangent = (along_u >> model.tangent_shift ^ sign) - sign;
-            for (const std::size_t corner : corners) add(sums[kStride * corner + 1], tangent);
-        }
-    }
+    // One of each quarter in turn: those that follow each other wait for the sums of the same
+    // vertex.
+    constexpr std::size_t kParts = 4;
+    const std::size_t count = indices.size() / 3;
+    const std::size_t part = count / kParts;
+    for (std::size_t i = 0; i < part; ++i)
+        for (std::size_t k = 0; k < kParts; ++k)
+            add_triangle<kHasUvs>(&indices[3 * (k * part + i)], places, model, sums);
+    for (std::size_t i = kParts * part; i < count; ++i)
+        add_triangle<kHasUvs>(&indices[3 * i], places, model, sums);
 }
 
 constexpr std::size_t kLanes = 8;
