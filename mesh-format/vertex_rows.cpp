@@ -85,8 +85,8 @@ class Planes {
     std::size_t count_;
 };
 
-/// All but vertex 0, of which nothing is expected, is a + b - c and what it differs by. `rows` has
-/// room for another after the last.
+/// All vertices, each a row: but for vertex 0, of which nothing is expected, a + b - c of its
+/// neighbours and what it differs by.
 template <std::size_t kNumbers>
 void decode_whole(const Planes& planes, const std::array<NumberPlanes, kNumbers>& numbers,
                   std::span<const Neighbours> neighbours, std::byte* rows) {
