@@ -285,4 +285,10 @@ void check(const Document& document, std::string_view name) {
     check(document, document.texels.size(), name);
 }
 
+void check_decoded(const Document& document, std::string_view name) {
+    const Checker checker(name);
+    check_geometry_sizes(checker, document);
+    for (std::size_t i = 0; i < document.meshes.size(); ++i) check_vertices(checker, document, i);
+}
+
 }  // namespace mesh_format

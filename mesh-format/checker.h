@@ -37,4 +37,8 @@ inline bool in_range(std::uint64_t offset, std::uint64_t size, std::uint64_t end
 /// As check() of file.h, where the texels section has `texel_bytes` bytes.
 void check(const Document& document, std::uint64_t texel_bytes, std::string_view name);
 
+/// What is left to ask of a document that passed check() once it is decoded, to indices that are
+/// all vertices: whether floats are finite.
+void check_decoded(const Document& document, std::string_view name);
+
 }  // namespace mesh_format

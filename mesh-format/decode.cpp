@@ -162,7 +162,7 @@ DecodedGeometry decode(Document& document, std::string_view name, const Loop& lo
     document.indices = all_indices;
     document.encoded_vertices = {};
     document.encoded_indices = {};
-    check(document, name);
+    check_decoded(document, name);
     return geometry;
 }
 

@@ -86,10 +86,10 @@ class Planes {
 };
 
 /// All vertices, each a row: but for vertex 0, of which nothing is expected, a + b - c of its
-/// neighbours and what it differs by.
-template <std::size_t kNumbers>
+/// neighbours and what it differs by. Calls each(i, row) for one after the other.
+template <std::size_t kNumbers, typename Each>
 void decode_whole(const Planes& planes, const std::array<NumberPlanes, kNumbers>& numbers,
-                  std::span<const Neighbours> neighbours, std::byte* rows) {
+                  std::span<const Neighbours> neighbours, std::byte* rows, const Each& each) {
     const auto at = [&](std::size_t i) {
         Row row;
         std::memcpy(&row, rows + i * sizeof row, sizeof row);
@@ -105,6 +105,7 @@ void decode_whole(const Planes& planes, const std::array<NumberPlanes, kNumbers>
             if (i > 0) [[likely]]
                 row = row + at(neighbours[i].a) - at(neighbours[i].c) + at(neighbours[i].b);
             std::memcpy(rows + i * sizeof row, &row, sizeof row);
+            each(i, row);
         }
     }
 }
@@ -113,7 +114,7 @@ constexpr std::array<NumberPlanes, kRowNumbers> kQuat48Planes{
     {{0, 3}, {1, 4}, {2, 5}, {10, 13}, {11, 14}, {12, 15}, {6, 8}, {7, 9}}};
 
 /// What the codes of a block's frames differ by.
-void read_codes(const Planes& planes, std::size_t first, std::array<std::uint32_t, kBlock>& codes) {
+void read_codes(const Planes& planes, std::size_t first, std::uint32_t* codes) {
     const Plane bytes = planes.bytes(kFirstFramePlane, first);
     const Plane tops = bytes >> 1 ^ -(bytes & 1);
     std::array<std::array<std::uint16_t, kBlock>, 3> digits;
@@ -148,20 +149,19 @@ void put(const Place& place, const Frame& frame, std::byte* out) {
     std::memcpy(out + 6 + kFrameBytes, &uv, sizeof uv);
 }
 
-void decode_frames32(const Planes& planes, std::span<const Neighbours> neighbours,
-                     const Place* places, std::byte* out, Scratch& scratch) {
-    auto* const codes = scratch.take<std::uint32_t>(neighbours.size());
-    for (std::size_t first = 0; first < neighbours.size(); first += kBlock) {
-        std::array<std::uint32_t, kBlock> differences;
-        read_codes(planes, first, differences);
-        const std::size_t size = std::min(kBlock, neighbours.size() - first);
-        for (std::size_t k = 0; k < size; ++k) {
-            const std::size_t i = first + k;
-            const auto [a, b, c, unused] = neighbours[i];
-            codes[i] = differences[k] + (i > 0 ? codes[a] - codes[c] + codes[b] : 0);
-            put(places[i], codes[i], out + i * kStride32);
-        }
-    }
+void decode_quat32(const Planes& planes, std::span<const Neighbours> neighbours, std::byte* places,
+                   std::byte* out, Scratch& scratch) {
+    // What they differ by, and then the codes themselves.
+    auto* const codes = scratch.take<std::uint32_t>(neighbours.size() + kBlock);
+    for (std::size_t first = 0; first < neighbours.size(); first += kBlock)
+        read_codes(planes, first, codes + first);
+    // Together with the places: processors need not wait for one and then for the other.
+    decode_whole(planes, kPlacePlanes, neighbours, places, [&](std::size_t i, const Place& place) {
+        const auto [a, b, c, unused] = neighbours[i];
+        if (i > 0) [[likely]]
+            codes[i] += codes[a] - codes[c] + codes[b];
+        put(place, codes[i], out + i * kStride32);
+    });
 }
 
 /// What surfaces suggest of all frames, by their sums, and what those differ by.
@@ -197,7 +197,7 @@ class SurfaceFrames {
             for (std::size_t at = 0; at < kFrameLanes && first + at < places_.size();
                  at += kBlock) {
                 std::array<std::uint32_t, kBlock> frames;
-                read_codes(planes_, first + at, frames);
+                read_codes(planes_, first + at, frames.data());
                 for (std::size_t k = 0; k < kBlock; ++k) frames[k] += codes[at + k];
                 put_all(frames, first + at, out);
             }
@@ -230,10 +230,13 @@ void decode_rows(const MeshRecord& mesh, const SurfaceModel* model,
     const std::size_t count = mesh.vertex_count;
     const Planes planes(planes_begin, count);
     const bool is_wide = mesh.forms.frame == FrameForm::quat48;
-    if (is_wide && !model) return decode_whole(planes, kQuat48Planes, neighbours, vertices);
+    const auto nothing = [](std::size_t, const Row&) {};
+    if (is_wide && !model)
+        return decode_whole(planes, kQuat48Planes, neighbours, vertices, nothing);
     auto* const places = scratch.take<Place>(count);
-    decode_whole(planes, kPlacePlanes, neighbours, reinterpret_cast<std::byte*>(places));
-    if (!model) return decode_frames32(planes, neighbours, places, vertices, scratch);
+    auto* const place_bytes = reinterpret_cast<std::byte*>(places);
+    if (!model) return decode_quat32(planes, neighbours, place_bytes, vertices, scratch);
+    decode_whole(planes, kPlacePlanes, neighbours, place_bytes, nothing);
     const std::size_t sum_count = sums_of_vertex(*model) * (count + kFrameLanes);
     const std::span sums(scratch.take<Sum>(sum_count), sum_count);
     sum_surfaces(indices, places, *model, sums);

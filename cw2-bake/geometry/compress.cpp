@@ -73,7 +73,7 @@ class Packer {
     Bytes plane(std::span<const std::byte> bytes) {
         Bytes best = codes_.frame(bytes);
         Bytes matched = matches_.frame(bytes);
-        if (matched.size() < best.size() - best.size() / 14) best = std::move(matched);
+        if (matched.size() < best.size() - best.size() / 10) best = std::move(matched);
         if (best.size() > bytes.size() - bytes.size() / 20) best = copies_.frame(bytes);
         return best;
     }

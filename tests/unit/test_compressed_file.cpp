@@ -56,6 +56,21 @@ TEST(CompressedFile, DecodesToWhatWasCompressed) {
     }
 }
 
+/// What a plain file may not hold a compressed one may not hide.
+TEST(CompressedFile, FloatsThatAreNoneAreRefused) {
+    SmallScene scene;
+    const MeshRecord& mesh = scene.meshes[1];
+    const VertexLayout layout = vertex_layout(mesh.forms);
+    const std::uint32_t infinity = 0x7F80'0000;
+    for (const std::uint32_t offset : {4u, layout.frame_offset + 8, layout.uv_offset + 4}) {
+        SmallScene damaged = scene;
+        std::memcpy(&damaged.vertices[mesh.vertex_offset + layout.stride + offset], &infinity,
+                    sizeof infinity);
+        EXPECT_TRUE(
+            complaint_of_decoding(written(compressed(damaged))).ends_with(" is not finite"));
+    }
+}
+
 TEST(CompressedFile, PartsOfOtherSizesAreRefused) {
     for (const SectionKind kind : {SectionKind::encoded_vertices, SectionKind::encoded_indices}) {
         for (std::uint32_t less = 1;; ++less) {
