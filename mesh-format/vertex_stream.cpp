@@ -15,7 +15,7 @@ namespace mesh_format {
 
 namespace {
 
-/// Surfaces take some 15 ns a vertex to decode: a mesh has them where they save so many of its
+/// Surfaces take some 10 ns a vertex to decode: a mesh has them where they save so many of its
 /// bits.
 constexpr double kLeastBitsSaved = 10;
 
