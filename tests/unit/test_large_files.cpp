@@ -18,15 +18,13 @@ namespace {
 
 constexpr std::uint64_t k4GiB = std::uint64_t{1} << 32;
 
-// The address sanitizer keeps a byte for eight that are read.
-#if defined(__SANITIZE_ADDRESS__)
-#define CW2_ADDRESS_SANITIZER
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define CW2_ADDRESS_SANITIZER
+// The address sanitizer keeps a byte for eight that are read, the thread sanitizer two for one.
+#ifndef __has_feature
+#define __has_feature(feature) 0
 #endif
-#endif
-#ifdef CW2_ADDRESS_SANITIZER
+#if __has_feature(thread_sanitizer)
+constexpr long kMostKibibytes = 10'240 << 10;
+#elif __has_feature(address_sanitizer) || defined(__SANITIZE_ADDRESS__)
 constexpr long kMostKibibytes = 1280 << 10;
 #else
 constexpr long kMostKibibytes = 256 << 10;
