@@ -1,7 +1,9 @@
 // Files with compressed geometry: what they decode to, and what damage does.
 #include <gtest/gtest.h>
+#include <zstd.h>
 
 #include <algorithm>
+#include <cstring>
 #include <random>
 
 #include "cw2-bake/geometry/compress.h"
@@ -82,6 +84,52 @@ TEST(CompressedFile, PartsOfOtherSizesAreRefused) {
             EXPECT_TRUE(complaint_of_decoding(forgery.sealed())
                             .ends_with(": its encoded geometry is damaged"));
         }
+    }
+}
+
+constexpr std::size_t kSizes = 2 * sizeof(std::uint32_t);  // of the parts of two meshes
+
+/// What the Zstandard frames of a section's first part hold.
+Bytes stream_of_first(const Bytes& section) {
+    std::uint32_t size = 0;
+    std::memcpy(&size, section.data(), sizeof size);
+    Bytes stream(1 << 16);
+    stream.resize(ZSTD_decompress(stream.data(), stream.size(), &section[kSizes], size));
+    return stream;
+}
+
+/// The section with another stream in its first part.
+Bytes with_first(const Bytes& section, const Bytes& stream) {
+    std::uint32_t old_size = 0;
+    std::memcpy(&old_size, section.data(), sizeof old_size);
+    const auto others = std::span(section).subspan(kSizes + old_size);
+    Bytes result(kSizes + ZSTD_compressBound(stream.size()) + others.size());
+    std::ranges::copy(std::span(section).first(kSizes), result.begin());
+    const auto size = static_cast<std::uint32_t>(
+        ZSTD_compress(&result[kSizes], result.size() - kSizes, stream.data(), stream.size(), 1));
+    std::memcpy(result.data(), &size, sizeof size);
+    std::ranges::copy(others, result.begin() + kSizes + size);
+    result.resize(kSizes + size + others.size());
+    return result;
+}
+
+TEST(CompressedFile, StreamsOfOtherSizesAreRefused) {
+    SmallScene scene = compressed();
+    for (Bytes* const section : {&scene.encoded_vertices, &scene.encoded_indices}) {
+        const Bytes whole = *section;
+        const Bytes stream = stream_of_first(whole);
+        *section = with_first(whole, stream);
+        EXPECT_EQ(complaint_of_decoding(written(scene)), "");
+        for (const std::size_t size : {std::size_t{0}, std::size_t{1}, stream.size() - 1,
+                                       stream.size() + 1, stream.size() + 2, std::size_t{9999}}) {
+            Bytes other = stream;
+            other.resize(size);
+            *section = with_first(whole, other);
+            EXPECT_TRUE(complaint_of_decoding(written(scene))
+                            .ends_with(": its encoded geometry is damaged"))
+                << size << " of " << stream.size();
+        }
+        *section = whole;
     }
 }
 
