@@ -530,6 +530,9 @@ def code_differences(stream, at, count):
 
 # --- What triangles tell of frames ------------------------------------------------------------------
 
+UV_MODELS = 1, 3
+BY_ANGLE_MODELS = 3, 4
+
 
 def dot(a, b):
     return sum(x * y for x, y in zip(a, b))
@@ -561,25 +564,52 @@ def signed(number, bits):
     return (number + (1 << bits - 1)) % (1 << bits) - (1 << bits - 1)
 
 
-def sum_surfaces(indices, count, shifts, has_uvs, out, uv_at, stride):
+def parts_by_area(p, q, r, shifts):
+    """The normal and the tangent that a triangle of these places adds to each of its corners."""
+    e, minus_e, minus_f = ([signed(a - b, 16) for a, b in zip(*ends)] for ends in ((q, p), (p, q), (p, r)))
+    normal = [signed(e[k] * minus_f[m] + minus_e[m] * minus_f[k], 32) >> shifts[0]
+              for k, m in ((2, 1), (0, 2), (1, 0))]
+    along_u = [signed(e[k] * minus_f[4] + minus_f[k] * minus_e[4], 32) for k in range(4)]
+    tangent = [c >> shifts[1] for c in along_u]
+    if along_u[3] < 0:
+        tangent[:3] = [-c for c in tangent[:3]]
+    return [(normal, tangent)] * 3
+
+
+def arc_cosine(cosine):
+    cosine = min(max(cosine, -16384), 16384)
+    square = cosine * cosine >> 14
+    series = 17207 - (square * (2785 - (square * 8582 >> 14)) >> 14)
+    return max(25736 - (cosine * series >> 14), 0)
+
+
+def parts_by_angle(p, q, r):
+    """The same by angle."""
+    e, f, g = ([signed(a - b, 16) for a, b in zip(*ends)] for ends in ((q, p), (r, p), (r, q)))
+    normal = nearly_unit(shortened([signed(c, 32) for c in cross(e, f)]))
+    along_u = [signed(f[k] * e[4] - e[k] * f[4], 32) for k in range(4)]
+    if along_u[3] < 0:
+        along_u[:3] = [signed(-c, 32) for c in along_u[:3]]
+    tangent = nearly_unit(shortened(along_u[:3])) + [((along_u[3] > 0) - (along_u[3] < 0)) << 14]
+    along_e, along_f, along_g = (nearly_unit(shortened(edge[:3])) for edge in (e, f, g))
+    angles = [arc_cosine(dot(along_e, along_f) >> 14), arc_cosine(-dot(along_e, along_g) >> 14),
+              arc_cosine(dot(along_f, along_g) >> 14)]
+    return [([c * angle >> 14 for c in normal], [c * angle >> 14 for c in tangent]) for angle in angles]
+
+
+def sum_surfaces(model, indices, count, shifts, out, uv_at, stride):
     """The sums of the normals and of the tangents of each vertex's triangles."""
     places = [struct.unpack_from("<3H", out, i * stride) + struct.unpack_from("<2H", out, i * stride + uv_at)
               for i in range(count)]
     sums = [([0] * 3, [0] * 4) for _ in places]
     for i in range(0, len(indices), 3):
         corners = indices[i:i + 3]
-        p, q, r = (places[c] for c in corners)
-        e, minus_e, minus_f = ([signed(a - b, 16) for a, b in zip(*ends)] for ends in ((q, p), (p, q), (p, r)))
-        normal = [signed(e[k] * minus_f[m] + minus_e[m] * minus_f[k], 32) >> shifts[0]
-                  for k, m in ((2, 1), (0, 2), (1, 0))]
-        along_u = [signed(e[k] * minus_f[4] + minus_f[k] * minus_e[4], 32) for k in range(4)]
-        tangent = [c >> shifts[1] for c in along_u]
-        if along_u[3] < 0:
-            tangent[:3] = [-c for c in tangent[:3]]
-        for corner in corners:
+        ends = [places[c] for c in corners]
+        parts = parts_by_angle(*ends) if model in BY_ANGLE_MODELS else parts_by_area(*ends, shifts)
+        for corner, (normal, tangent) in zip(corners, parts):
             for k in range(3):
                 sums[corner][0][k] += normal[k]
-            for k in range(4 if has_uvs else 0):
+            for k in range(4 if model in UV_MODELS else 0):
                 sums[corner][1][k] += tangent[k]
     return [([signed(c, 32) for c in normal], [signed(c, 32) for c in tangent]) for normal, tangent in sums]
 
@@ -644,7 +674,7 @@ def decode_vertices(mesh, indices, neighbours, part):
     stream = unwrap(part, size)
     require(len(stream) == size, "encoded geometry is damaged")
     model, *shifts = stream[:3]
-    require(max(shifts) <= 15 and model <= 2 and
+    require(max(shifts) <= 15 and model <= 4 and
             (model == 0 or frame in ("quat48", "quat32") and position == uv == "quantised"),
             "encoded geometry is damaged")
     out, at = bytearray(count * stride), 3
@@ -654,7 +684,7 @@ def decode_vertices(mesh, indices, neighbours, part):
             read_numbers(stream, at, count, numbers, size)
         expected = [None] * numbers
         if offset == frame_at and model:
-            sums = sum_surfaces(indices, count, shifts, model == 1, out, uv_at, stride)
+            sums = sum_surfaces(model, indices, count, shifts, out, uv_at, stride)
             expected = expected_frames(frame, sums)
         columns = [decode_words(d, neighbours, size, e) for d, e in zip(differences, expected)]
         if size == 4 and not is_code:

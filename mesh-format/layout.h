@@ -137,6 +137,8 @@ enum class FrameModel : std::uint8_t {
     /// quantised.
     surface,
     surface_without_uvs,  ///< the same: SurfaceModel::has_uvs
+    surface_by_angle,     ///< SurfaceModel::by_angle
+    surface_by_angle_without_uvs,
     count
 };
 

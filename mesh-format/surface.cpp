@@ -163,6 +163,120 @@ CW2_INLINE Vectors nearly_unit(const Vectors& a) {
     return shifted(product(a, inverse_root(square << 2 * bits)), 15 - bits);
 }
 
+using UnsignedLanes = std::uint32_t __attribute__((vector_size(4 * kLanes)));
+
+/// a b - c d, modulo 2^32.
+CW2_INLINE Lanes wrapped_winding(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d) {
+    return reinterpret_cast<Lanes>(
+        reinterpret_cast<UnsignedLanes>(a) * reinterpret_cast<UnsignedLanes>(b) -
+        reinterpret_cast<UnsignedLanes>(c) * reinterpret_cast<UnsignedLanes>(d));
+}
+
+/// Of a cosine, which may be a bit too large, in radians within 0.012.
+CW2_INLINE Lanes arc_cosine(Lanes cosine) {
+    cosine = cosine > kOne ? Lanes{} + kOne : cosine;
+    cosine = cosine < -kOne ? Lanes{} - kOne : cosine;
+    const Lanes square = cosine * cosine >> kBits;
+    const Lanes series =
+        fixed(1.05023) - (square * (fixed(0.16998) - (square * fixed(0.52382) >> kBits)) >> kBits);
+    return larger(fixed(1.570796) - (cosine * series >> kBits), Lanes{});
+}
+
+/// An edge of each of some triangles, in positions and UVs.
+struct Edges {
+    Vectors xyz;
+    Lanes u, v;
+};
+
+CW2_INLINE Edges edges_between(const std::uint16_t* indices, std::size_t from, std::size_t to,
+                               const Place* places) {
+    using SignedRow = std::int16_t __attribute__((vector_size(16)));
+    std::array<Row, kRowNumbers> rows;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+        rows[lane] = places[indices[3 * lane + to]] - places[indices[3 * lane + from]];
+    transpose(rows);
+    const auto widened = [&](std::size_t k) __attribute__((always_inline)) {
+        return __builtin_convertvector(reinterpret_cast<SignedRow>(rows[k]), Lanes);
+    };
+    return {{widened(0), widened(1), widened(2)}, widened(3), widened(4)};
+}
+
+/// The four numbers of each lane.
+CW2_INLINE std::array<Four, kLanes> by_lane(const Vectors& xyz, const Lanes& w) {
+    const Lanes xy0 = __builtin_shufflevector(xyz.x, xyz.y, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Lanes zw0 = __builtin_shufflevector(xyz.z, w, 0, 8, 1, 9, 4, 12, 5, 13);
+    const Lanes xy2 = __builtin_shufflevector(xyz.x, xyz.y, 2, 10, 3, 11, 6, 14, 7, 15);
+    const Lanes zw2 = __builtin_shufflevector(xyz.z, w, 2, 10, 3, 11, 6, 14, 7, 15);
+    return {__builtin_shufflevector(xy0, zw0, 0, 1, 8, 9),
+            __builtin_shufflevector(xy0, zw0, 2, 3, 10, 11),
+            __builtin_shufflevector(xy2, zw2, 0, 1, 8, 9),
+            __builtin_shufflevector(xy2, zw2, 2, 3, 10, 11),
+            __builtin_shufflevector(xy0, zw0, 4, 5, 12, 13),
+            __builtin_shufflevector(xy0, zw0, 6, 7, 14, 15),
+            __builtin_shufflevector(xy2, zw2, 4, 5, 12, 13),
+            __builtin_shufflevector(xy2, zw2, 6, 7, 14, 15)};
+}
+
+/// Of kLanes triangles the first `count`.
+template <bool kHasUvs>
+CW2_INLINE void add_by_angle(const std::uint16_t* indices, std::size_t count, const Place* places,
+                             Sum* sums) {
+    const Edges e = edges_between(indices, 0, 1, places);
+    const Edges f = edges_between(indices, 0, 2, places);
+    const Edges g = edges_between(indices, 1, 2, places);
+    const auto unit = [&](const Vectors& v) __attribute__((always_inline)) {
+        return nearly_unit(shortened(v, size(v)));
+    };
+    const Vectors along_e = unit(e.xyz), along_f = unit(f.xyz), along_g = unit(g.xyz);
+    const Lanes angles[] = {arc_cosine(dot(along_e, along_f) >> kBits),
+                            arc_cosine(-dot(along_e, along_g) >> kBits),
+                            arc_cosine(dot(along_f, along_g) >> kBits)};
+    const std::array<Four, kLanes> normals =
+        by_lane(unit({wrapped_winding(e.xyz.y, f.xyz.z, e.xyz.z, f.xyz.y),
+                      wrapped_winding(e.xyz.z, f.xyz.x, e.xyz.x, f.xyz.z),
+                      wrapped_winding(e.xyz.x, f.xyz.y, e.xyz.y, f.xyz.x)}),
+                Lanes{});
+    std::array<Four, kLanes> tangents{};
+    if constexpr (kHasUvs) {
+        const Lanes area = wrapped_winding(f.u, e.v, e.u, f.v);
+        const Lanes sign = area >> 31;
+        const auto along_u = [&](const Lanes& a, const Lanes& b) __attribute__((always_inline)) {
+            const Lanes part = wrapped_winding(b, e.v, a, f.v);
+            return reinterpret_cast<Lanes>(reinterpret_cast<UnsignedLanes>(part ^ sign) -
+                                           reinterpret_cast<UnsignedLanes>(sign));
+        };
+        tangents = by_lane(
+            unit({along_u(e.xyz.x, f.xyz.x), along_u(e.xyz.y, f.xyz.y), along_u(e.xyz.z, f.xyz.z)}),
+            ((area < 0) - (area > 0)) * kOne);
+    }
+    for (std::size_t lane = 0; lane < count; ++lane) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t corner = indices[3 * lane + k];
+            const Four normal = normals[lane] * angles[k][lane] >> kBits;
+            if constexpr (!kHasUvs) {
+                add(&sums[corner], reinterpret_cast<UnsignedFour>(normal));
+            } else {
+                const Four tangent = tangents[lane] * angles[k][lane] >> kBits;
+                add(&sums[2 * corner], reinterpret_cast<UnsignedEight>(__builtin_shufflevector(
+                                           normal, tangent, 0, 1, 2, 3, 4, 5, 6, 7)));
+            }
+        }
+    }
+}
+
+template <bool kHasUvs>
+CW2_INLINE void sum_by_angle(std::span<const std::uint16_t> indices, const Place* places,
+                             Sum* sums) {
+    constexpr std::size_t kStep = 3 * kLanes;
+    std::size_t i = 0;
+    for (; i + kStep <= indices.size(); i += kStep)
+        add_by_angle<kHasUvs>(&indices[i], kLanes, places, sums);
+    if (i == indices.size()) return;
+    std::array<std::uint16_t, kStep> rest{};
+    std::ranges::copy(indices.subspan(i), rest.begin());
+    add_by_angle<kHasUvs>(rest.data(), (indices.size() - i) / 3, places, sums);
+}
+
 /// 2^30 / number, of numbers from 2^14 to 2^16.
 CW2_INLINE Lanes inverse(const Lanes& number) {
     const Lanes x = number >> 2;
@@ -175,8 +289,8 @@ CW2_INLINE Lanes inverse(const Lanes& number) {
 }
 
 CW2_INLINE Lanes wrapped_product(const Lanes& a, const Lanes& b) {
-    using Unsigned = std::uint32_t __attribute__((vector_size(4 * kLanes)));
-    return reinterpret_cast<Lanes>(reinterpret_cast<Unsigned>(a) * reinterpret_cast<Unsigned>(b));
+    return reinterpret_cast<Lanes>(reinterpret_cast<UnsignedLanes>(a) *
+                                   reinterpret_cast<UnsignedLanes>(b));
 }
 
 /// Of a ratio of at most 1 the angle in units of 45 degrees / 16,383, within 2.
@@ -312,13 +426,12 @@ template <bool kHasUvs>
 CW2_INLINE void set_codes(const Sum* sums, std::array<std::uint32_t, kFrameLanes>& codes) {
     Groups groups;
     set_quaternions<kHasUvs>(sums, groups);
-    using Unsigned = std::uint32_t __attribute__((vector_size(4 * kLanes)));
     for (std::size_t i = 0; i < groups.size(); ++i) {
         const Frames& frames = groups[i];
-        Unsigned code = reinterpret_cast<Unsigned>(frames.largest - 4 * frames.is_left);
+        auto code = reinterpret_cast<UnsignedLanes>(frames.largest - 4 * frames.is_left);
         for (std::size_t k = 3; k-- > 0;) {
             const Lanes digit = ((frames.angles[k] * 405 + kOne / 2) >> kBits) + 405;
-            code = code * 811 + reinterpret_cast<Unsigned>(digit);
+            code = code * 811 + reinterpret_cast<UnsignedLanes>(digit);
         }
         std::memcpy(&codes[i * kLanes], &code, sizeof code);
     }
@@ -336,7 +449,11 @@ int fitting_shift(uint64_t size) {
 CW2_EVERY_CPU void sum_surfaces(std::span<const std::uint16_t> indices, const Place* places,
                                 const SurfaceModel& model, std::span<Sum> sums) {
     std::ranges::fill(sums, Sum{});
-    if (model.has_uvs)
+    if (model.by_angle && model.has_uvs)
+        sum_by_angle<true>(indices, places, sums.data());
+    else if (model.by_angle)
+        sum_by_angle<false>(indices, places, sums.data());
+    else if (model.has_uvs)
         sum_all<true>(indices, places, model, sums.data());
     else
         sum_all<false>(indices, places, model, sums.data());
@@ -358,7 +475,7 @@ SurfaceModel fitting_model(std::span<const std::uint16_t> indices, const Place* 
             normal |= static_cast<uint64_t>(winding(k, (k + 1) % 3));
         for (std::size_t k = 0; k < 4; ++k) tangent |= static_cast<uint64_t>(winding(k, 4));
     }
-    return {has_uvs, fitting_shift(normal), fitting_shift(tangent)};
+    return {has_uvs, false, fitting_shift(normal), fitting_shift(tangent)};
 }
 
 CW2_EVERY_CPU void expect_quat48(const Sum* sums, bool has_uvs, std::array<Words, 3>& words) {

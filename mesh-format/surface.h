@@ -15,17 +15,20 @@ namespace mesh_format {
 /// A vertex as x, y, z, u, v of its quantised position and UV, and three numbers of no meaning.
 using Place = Row;
 
-/// What is summed, in units of 2^shift.
+/// What is summed: by area in units of 2^shift, which takes less time, or by angle.
 struct SurfaceModel {
     bool has_uvs;  ///< else there are no tangents
+    bool by_angle;
     int normal_shift;
     int tangent_shift;
 };
 inline constexpr int kMaxSurfaceShift = 15;
 
-/// Modulo 2^32, over the triangles of a vertex. Of normals: as long as twice the areas; the fourth
-/// number has no meaning. Of tangents: along u, as long as twice the areas in UVs times lengths
-/// along u; the fourth number is those areas, below 0 for a left-handed frame.
+/// Modulo 2^32, over the triangles of a vertex. By area, of normals: as long as twice the areas;
+/// the fourth number has no meaning. Of tangents: along u, as long as twice the areas in UVs times
+/// lengths along u; the fourth number is those areas, below 0 for a left-handed frame. By angle,
+/// all are as long as the triangle's angle at the vertex in units of 2^-14, and the fourth number
+/// of tangents has the sign of the area.
 using Sum = std::array<std::int32_t, 4>;
 
 /// Of normals, and if there are UVs of tangents.
@@ -39,7 +42,8 @@ constexpr std::size_t sums_of_vertex(const SurfaceModel& model) {
 void sum_surfaces(std::span<const std::uint16_t> indices, const Place* places,
                   const SurfaceModel& model, std::span<Sum> sums);
 
-/// The least shifts with which sums over a hundred of the largest triangles are below 2^31.
+/// By area, with the least shifts with which sums over a hundred of the largest triangles are below
+/// 2^31.
 SurfaceModel fitting_model(std::span<const std::uint16_t> indices, const Place* places,
                            bool has_uvs);
 
