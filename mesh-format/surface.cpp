@@ -173,9 +173,9 @@ CW2_INLINE Lanes wrapped_winding(const Lanes& a, const Lanes& b, const Lanes& c,
 }
 
 /// Of a cosine, which may be a bit too large, in radians within 0.012.
-CW2_INLINE Lanes arc_cosine(Lanes cosine) {
-    cosine = cosine > kOne ? Lanes{} + kOne : cosine;
-    cosine = cosine < -kOne ? Lanes{} - kOne : cosine;
+CW2_INLINE Lanes arc_cosine(const Lanes& number) {
+    const Lanes low = number < -kOne ? Lanes{} - kOne : number;
+    const Lanes cosine = low > kOne ? Lanes{} + kOne : low;
     const Lanes square = cosine * cosine >> kBits;
     const Lanes series =
         fixed(1.05023) - (square * (fixed(0.16998) - (square * fixed(0.52382) >> kBits)) >> kBits);
