@@ -169,12 +169,12 @@ class SurfaceFrames {
  public:
     SurfaceFrames(const Planes& planes, const SurfaceModel& model, std::span<const Sum> sums,
                   std::span<const Place> places)
-        : planes_(planes), has_uvs_(model.has_uvs), sums_(sums), places_(places) {}
+        : planes_(planes), model_(model), sums_(sums), places_(places) {}
 
     void decode_quat48(std::byte* out) const {
         for (std::size_t first = 0; first < places_.size(); first += kFrameLanes) {
             std::array<Words, 3> words;
-            expect_quat48(sums_at(first), has_uvs_, words);
+            expect_quat48(sums_at(first), model_.has_uvs, words);
             for (std::size_t at = 0; at < kFrameLanes && first + at < places_.size(); at += kBlock)
                 for (std::size_t k = 0; k < 3; ++k) {
                     const std::array<Row, kHalves> differences = planes_.differences(
@@ -193,7 +193,7 @@ class SurfaceFrames {
     void decode_quat32(std::byte* out) const {
         for (std::size_t first = 0; first < places_.size(); first += kFrameLanes) {
             std::array<std::uint32_t, kFrameLanes> codes;
-            expect_quat32(sums_at(first), has_uvs_, codes);
+            expect_quat32(sums_at(first), model_.has_uvs, codes);
             for (std::size_t at = 0; at < kFrameLanes && first + at < places_.size();
                  at += kBlock) {
                 std::array<std::uint32_t, kBlock> frames;
@@ -205,7 +205,7 @@ class SurfaceFrames {
     }
 
  private:
-    const Sum* sums_at(std::size_t vertex) const { return &sums_[(has_uvs_ ? 2 : 1) * vertex]; }
+    const Sum* sums_at(std::size_t vertex) const { return &sums_[sums_of_vertex(model_) * vertex]; }
 
     /// The frames from vertex `first` on, but for those behind the last.
     template <typename Frames>
@@ -217,7 +217,7 @@ class SurfaceFrames {
     }
 
     const Planes& planes_;
-    bool has_uvs_;
+    const SurfaceModel& model_;
     std::span<const Sum> sums_;
     std::span<const Place> places_;
 };

@@ -212,6 +212,14 @@ FrameModel frame_model(const SurfaceModel& model) {
     return model.has_uvs ? FrameModel::surface : FrameModel::surface_without_uvs;
 }
 
+/// The other way, of a stream's head.
+SurfaceModel surface_model(FrameModel model, const std::byte* shifts) {
+    return {.has_uvs = model == FrameModel::surface || model == FrameModel::surface_by_angle,
+            .by_angle = model >= FrameModel::surface_by_angle,
+            .normal_shift = std::to_integer<int>(shifts[0]),
+            .tangent_shift = std::to_integer<int>(shifts[1])};
+}
+
 /// How many bits a vertex's bytes in planes take at least in codes of their own.
 double entropy(std::span<const std::byte> planes, std::size_t vertex_count) {
     double bits = 0;
@@ -274,10 +282,7 @@ bool decode_vertices(const MeshRecord& mesh, std::span<const std::uint16_t> indi
                      std::span<const Neighbours> neighbours, const std::byte* stream,
                      std::byte* vertices, Scratch& scratch) {
     const auto model = static_cast<FrameModel>(stream[0]);
-    const SurfaceModel surface{
-        model == FrameModel::surface || model == FrameModel::surface_by_angle,
-        model >= FrameModel::surface_by_angle, std::to_integer<int>(stream[1]),
-        std::to_integer<int>(stream[2])};
+    const SurfaceModel surface = surface_model(model, stream + 1);
     const bool has_surfaces = model != FrameModel::neighbours;
     if (model >= FrameModel::count || surface.normal_shift > kMaxSurfaceShift ||
         surface.tangent_shift > kMaxSurfaceShift ||

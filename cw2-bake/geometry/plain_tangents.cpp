@@ -9,18 +9,12 @@
 #include <span>
 #include <vector>
 
-#include "common/every_cpu.h"
 #include "cw2-bake/geometry/fan.h"
 #include "cw2-bake/geometry/tangent_directions.h"
+#include "cw2-bake/geometry/tangent_topology.h"
 
 namespace bake {
 namespace {
-
-CW2_EVERY_CPU std::uint32_t highest_of(const std::uint32_t* vertices, std::size_t count) {
-    std::uint32_t highest = 0;
-    for (std::size_t i = 0; i < count; ++i) highest = std::max(highest, vertices[i]);
-    return highest;
-}
 
 /// Makes the fans of one block of faces after the other; used by one thread.
 class FaceBlock {
@@ -78,13 +72,16 @@ class FaceBlock {
 
 }  // namespace
 
+bool may_be_plain(const SourceScene& scene) {
+    return scene.tangents.empty() && scene.colors.empty();
+}
+
 RawVector<std::uint8_t> add_plain_tangents(const SourceScene& scene, FramedTriangles& triangles,
                                            const Advance& advance) {
     RawVector<std::uint8_t> left(triangles.vertices.size());
-    const bool all_left = !scene.tangents.empty() || !scene.colors.empty();
-    std::ranges::fill(left, all_left ? 1 : 0);
-    if (all_left) {
-        advance(kPlainShare);
+    std::ranges::fill(left, may_be_plain(scene) ? 0 : 1);
+    if (!may_be_plain(scene)) {
+        advance(1.0);
         return left;
     }
 
@@ -98,8 +95,9 @@ RawVector<std::uint8_t> add_plain_tangents(const SourceScene& scene, FramedTrian
     const auto begin_of = [&](std::size_t block) { return std::min(block * block_faces, faces); };
     std::vector<std::uint32_t> end_vertex(blocks + 1);
     tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-        end_vertex[block + 1] = 1 + highest_of(&triangles.indices[3 * begin_of(block)],
-                                               3 * (begin_of(block + 1) - begin_of(block)));
+        const std::size_t first = 3 * begin_of(block);
+        const std::size_t count = 3 * begin_of(block + 1) - first;
+        end_vertex[block + 1] = 1 + range_of(&triangles.indices[first], count).high;
     });
     for (std::size_t block = 0; block < blocks; ++block)
         end_vertex[block + 1] = std::max(end_vertex[block + 1], end_vertex[block]);
@@ -108,7 +106,7 @@ RawVector<std::uint8_t> add_plain_tangents(const SourceScene& scene, FramedTrian
     tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
         makers.local().make(begin_of(block), begin_of(block + 1), end_vertex[block],
                             end_vertex[block + 1]);
-        advance(kPlainShare / static_cast<double>(blocks));
+        advance(1.0 / static_cast<double>(blocks));
     });
     return left;
 }

@@ -10,8 +10,8 @@
 
 namespace bake {
 
-/// How much of the time that tangents take this does.
-inline constexpr double kPlainShare = 0.7;
+/// What the faces at a vertex tell is not all where the source gives tangents or colours.
+bool may_be_plain(const SourceScene& scene);
 
 /// Sets the tangents of the vertices of which one pass over the faces shows that all of theirs are
 /// one of MikkTSpace's groups, no two opposite. Returns, by vertex, whether it is left as it was: 1

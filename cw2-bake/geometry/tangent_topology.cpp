@@ -13,19 +13,6 @@ namespace {
 
 constexpr std::size_t kBlockCorners = 1 << 11;
 
-struct VertexRange {
-    std::uint32_t low, high;
-};
-
-CW2_EVERY_CPU VertexRange range_of(const std::uint32_t* vertices, std::size_t count) {
-    VertexRange range{vertices[0], vertices[0]};
-    for (std::size_t i = 1; i < count; ++i) {
-        range.low = vertices[i] < range.low ? vertices[i] : range.low;
-        range.high = vertices[i] > range.high ? vertices[i] : range.high;
-    }
-    return range;
-}
-
 /// Of each block of corners the range of its vertices.
 std::vector<VertexRange> ranges_of_blocks(std::span<const std::uint32_t> indices) {
     std::vector<VertexRange> ranges((indices.size() + kBlockCorners - 1) / kBlockCorners);
@@ -39,6 +26,15 @@ std::vector<VertexRange> ranges_of_blocks(std::span<const std::uint32_t> indices
 }
 
 }  // namespace
+
+CW2_EVERY_CPU VertexRange range_of(const std::uint32_t* vertices, std::size_t count) {
+    VertexRange range{vertices[0], vertices[0]};
+    for (std::size_t i = 1; i < count; ++i) {
+        range.low = vertices[i] < range.low ? vertices[i] : range.low;
+        range.high = vertices[i] > range.high ? vertices[i] : range.high;
+    }
+    return range;
+}
 
 /// Each task lists the corners of its own range of vertices, and reads all blocks of corners where
 /// one may be: so the lists are ascending, and no task waits for another's counts but at the one

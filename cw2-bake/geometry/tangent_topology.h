@@ -2,6 +2,7 @@
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,6 +13,13 @@
 namespace bake {
 
 inline constexpr std::uint32_t kNoSlot = 0xFFFF'FFFF;
+
+struct VertexRange {
+    std::uint32_t low, high;
+};
+
+/// Of at least one vertex the lowest and the highest.
+VertexRange range_of(const std::uint32_t* vertices, std::size_t count);
 
 /// The corners at each vertex: those of vertex v, ascending, are corner[first[v]] ..
 /// corner[first[v + 1]].
